@@ -1,0 +1,67 @@
+# Everything is made inside this folder: the environment in .venv, all caches in .cache.
+# Paths in recipes are relative, so the checkout may lie in a folder with spaces in its name.
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo reproduce test parity lint types bench clean
+.SUFFIXES:
+
+BIN := .venv/bin
+CACHE := $(CURDIR)/.cache
+JOBS ?= 2
+OUT ?= results
+ARGS ?=
+
+export XDG_CACHE_HOME := $(CACHE)/xdg
+export PIP_CACHE_DIR := $(CACHE)/pip
+export MPLCONFIGDIR := $(CACHE)/matplotlib
+export ROS_HOME := $(CACHE)/ros
+export ROS_LOG_DIR := $(CACHE)/ros/log
+export HYPOTHESIS_STORAGE_DIRECTORY := $(CACHE)/hypothesis
+export MYPY_CACHE_DIR := $(CACHE)/mypy
+export RUFF_CACHE_DIR := $(CACHE)/ruff
+export PYTEST_DEBUG_TEMPROOT := $(CACHE)/tmp
+
+# A sourced ROS installation, or a ROS process of another environment that calls make, must not
+# be mixed into this one.
+ifneq ($(AMENT_PREFIX_PATH)$(_ROS_WHEELS_BOOTSTRAP_COMPLETE),)
+unexport LD_LIBRARY_PATH
+endif
+unexport PYTHONPATH PYTHONHOME AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH
+unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
+
+help:  ## Show this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s  %s\n", $$1, $$2 }' Makefile
+
+setup:  ## Make .venv, or bring it up to date (PYTHON=... picks the interpreter)
+	@sh requirements/setup.sh
+
+demo: setup  ## Rebuild three towers through the ROS graph, with a bag and a picture
+	rm -rf demo
+	$(BIN)/blocks-planning run config/trials/demo.yaml --out demo --bag demo/bag --pace 0.15
+	$(BIN)/blocks-planning verify demo/bag
+	$(BIN)/blocks-planning draw demo/bag --record 2 --out demo/tower.png
+	@echo 'The second tower is in demo/tower.png.'
+
+reproduce: setup  ## Run every experiment of the paper (OUT=folder, ARGS=--quick)
+	$(BIN)/blocks-planning reproduce --out $(OUT) $(ARGS)
+
+test: setup  ## Run the tests (ARGS='-k word' for some, JOBS=4 for more processes)
+	$(BIN)/pytest -n $(JOBS) $(ARGS)
+
+parity: setup  ## Compare 272 trials through the graph with the same in one process
+	BLOCKS_PLANNING_PARITY=all $(BIN)/pytest -n $(JOBS) test/parity $(ARGS)
+
+lint: setup  ## Check style and format
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+
+types: setup  ## Check types
+	$(BIN)/mypy
+
+bench: setup  ## Measure speed
+	$(BIN)/python -m benchmarks $(ARGS)
+
+clean:  ## Remove everything that was made here
+	rm -f .venv/.stamp-*
+	rm -rf .venv .cache .hypothesis build install log *.egg-info
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,40 @@
+"""The errors that this package raises on purpose.
+
+::
+
+    BlocksPlanningError
+    ├── InvalidInput            something given to us is wrong: exit code 2
+    │   ├── StimulusError       a silhouette, or the file it stands in
+    │   ├── ConfigurationError  a planner, search or library setting
+    │   └── RecordError         a trial record, or the file it stands in
+    └── LimitExceeded           the question is legal but too large for a stated limit: exit code 2
+
+Every message is one sentence on one line that names the value, says where it came from and
+what would be right. Anything else that is raised is a defect.
+"""
+
+from __future__ import annotations
+
+
+class BlocksPlanningError(Exception):
+    """Base of every error that is raised on purpose."""
+
+
+class InvalidInput(BlocksPlanningError, ValueError):
+    """A value from outside that can't be used."""
+
+
+class StimulusError(InvalidInput):
+    """A silhouette that can't be read, or is not a silhouette."""
+
+
+class ConfigurationError(InvalidInput):
+    """A planner, search, block library or trial setting out of its range."""
+
+
+class RecordError(InvalidInput):
+    """A trial record that can't be read, or contradicts itself."""
+
+
+class LimitExceeded(BlocksPlanningError):
+    """A computation that would outgrow its stated limit; nothing was computed."""

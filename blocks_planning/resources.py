@@ -1,0 +1,27 @@
+"""Where the files that ship with the package are: in the checkout, or under ``share/``."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+def resource_directories(kind: str) -> Iterator[Path]:
+    """The existing directories of one kind ('stimuli', 'config'), the most specific first.
+
+    A checkout (also one that is installed in editable mode) comes before the prefixes of
+    ``AMENT_PREFIX_PATH`` (a ROS workspace) and that before ``sys.prefix`` (a virtual environment).
+    """
+    prefixes = [
+        *filter(None, os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)),
+        sys.prefix,
+    ]
+    candidates = [
+        _PACKAGE.parent / kind,
+        *(Path(prefix) / 'share' / _PACKAGE.name / kind for prefix in prefixes),
+    ]
+    return (candidate for candidate in dict.fromkeys(candidates) if candidate.is_dir())
