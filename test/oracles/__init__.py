@@ -1,0 +1,12 @@
+"""Slow, plain twins of the planning core, to hold the fast code against.
+
+Everything here works on plain sets of (column, row) cells and follows the definitions word by
+word: trees are built node by node, nothing is cached unless a docstring says so, nothing is
+imported from the package under test. Only the standard library is used.
+
+* ``randomness``: the generator every draw comes from
+* ``board``: how blocks fall, which placements are possible and legal
+* ``search``: one attempt of random, bfs, astar or best_first
+* ``exact``: fewest blocks and number of complete arrangements, in two independent ways
+* ``planners``: solve (attempts and budget), none, scoping, full
+"""
