@@ -1,0 +1,221 @@
+"""The yardstick: fewest blocks, number of arrangements, and proof that there are none.
+
+No order of placing has to be searched. A set of placed rectangles can be built in some order
+exactly if it tiles the region and every rectangle stands on the ground or on at least one filled
+cell: placed by rising bottom row, each comes to rest where it belongs. So it is a minimum exact
+cover, and a dynamic program that always fills the first empty cell, row by row from the left,
+solves it. Where it passes the end of row k, the state in which just rows(k) is filled answers for
+the region rows(k).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocks_planning.board import rules
+from blocks_planning.board.blocks import Placed
+from blocks_planning.board.geometry import Board, Mask
+from blocks_planning.board.kernels.masks import WORD_BITS, pack, words_of
+from blocks_planning.board.task import Task
+from blocks_planning.errors import LimitExceeded
+from blocks_planning.search.compiled import placements_of
+from blocks_planning.search.kernels.tiling import (
+    CANCELLED,
+    NO_MOVE,
+    OVERFLOW,
+    TOO_MANY,
+    Layer,
+    fill_cell,
+    make_layer,
+)
+from blocks_planning.search.result import CancelToken, Problem, SolveResult, SolveStatus
+
+MAX_STATES = 20_000_000
+"""Most states that the dynamic program stores, over all cells (about 1 GB)."""
+
+
+@dataclass(frozen=True)
+class ExactAnswer:
+    """What is true of a silhouette and a library.
+
+    Attributes:
+        fewest_blocks: that rebuild the silhouette; None if nothing does.
+        arrangements: number of different sets of placed blocks that rebuild it.
+        by_rows: fewest blocks for the regions rows(1) to rows(height).
+        placements: one way with fewest blocks, in an order in which it can be built.
+    """
+
+    fewest_blocks: int | None
+    arrangements: int
+    by_rows: tuple[int | None, ...]
+    placements: tuple[Placed, ...] | None
+
+
+class _Cancelled(Exception):
+    """The token was used."""
+
+
+class _CountOverflow(Exception):
+    """Arrangements need more words."""
+
+
+def analyse(task: Task, cancel: CancelToken | None = None) -> ExactAnswer | None:
+    """Fewest blocks and number of arrangements of a silhouette; None if cancelled.
+
+    Raises:
+        LimitExceeded: if more than ``MAX_STATES`` states would be stored; nothing else ends it.
+    """
+    problem = Problem(task, 0, task.silhouette)
+    words = 1
+    while True:
+        program = _Program(problem, words, cancel or CancelToken())
+        try:
+            program.run()
+        except _CountOverflow:
+            words *= 2
+            continue
+        except _Cancelled:
+            return None
+        fewest, arrangements = program.answer_at(task.board.height)
+        return ExactAnswer(
+            fewest_blocks=fewest,
+            arrangements=arrangements,
+            by_rows=tuple(program.answer_at(k)[0] for k in range(1, task.board.height + 1)),
+            placements=None if fewest is None else program.placements(),
+        )
+
+
+def solve_exactly(problem: Problem, cancel: CancelToken) -> SolveResult:
+    """Fill the region with the fewest blocks, or prove that there is no way.
+
+    Raises:
+        LimitExceeded: see :func:`analyse`.
+    """
+    program = _Program(problem, 0, cancel)
+    try:
+        program.run()
+    except _Cancelled:
+        return SolveResult(SolveStatus.CANCELLED, planning_cost=program.generated)
+    cost = program.generated
+    if program.answer_at(problem.task.board.height)[0] is None:
+        return SolveResult(SolveStatus.UNSOLVABLE_PROVEN, planning_cost=cost, attempts=1)
+    return SolveResult(SolveStatus.SOLVED, program.placements(), cost, cost, attempts=1)
+
+
+class _Program:
+    """The dynamic program of one problem; ``words`` 64-bit words count arrangements."""
+
+    def __init__(self, problem: Problem, words: int, cancel: CancelToken) -> None:
+        self._problem = problem
+        self._board = problem.task.board
+        self._words = words
+        self._cancel = cancel
+        self._mask_shape = pack([0], self._board.size).shape[1:]
+        self._ways: list[tuple[np.ndarray, np.ndarray]] = []
+        self._answers: dict[int, tuple[int | None, int]] = {}
+        self.generated = 0
+
+    def run(self) -> None:
+        """Fill cell after cell."""
+        problem, board = self._problem, self._board
+        if rules.is_dead(board, problem.built, problem.region):
+            return
+        layer = make_layer(1, self._mask_shape, self._words)
+        layer.filled[:] = pack([problem.built], board.size)
+        layer.fewest[:] = 0
+        layer.arrangements[:] = words_of([1])[:, :1]
+        layer.arrangements[:, 1:] = 0
+        stored = 0
+        for row in range(board.height):
+            for column in range(board.width):
+                cell = board.mask([(column, row)])
+                if cell & problem.region & ~problem.built:
+                    layer = self._fill(layer, cell)
+                    self._ways.append((layer.parent, layer.move))
+                    stored += len(layer.move)
+                    if stored > MAX_STATES:
+                        raise self._too_large()
+            self._keep_answer(row + 1, layer)
+
+    def _fill(self, layer: Layer, cell: Mask) -> Layer:
+        """The layer after a cell."""
+        board = self._board
+        choices = list(self._choices(board.cell(cell.bit_length() - 1)))
+        size = len(layer.fewest)
+        most = min(size * max(1, len(choices)), MAX_STATES)
+        following = make_layer(most, self._mask_shape, self._words)
+        reached, generated = fill_cell(
+            layer,
+            size,
+            pack([cell], board.size),
+            pack([cells for cells, _ in choices], board.size),
+            np.array([move for _, move in choices], np.int16),
+            following,
+            np.full(1 << (2 * most).bit_length(), -1, np.int32),
+            self._cancel.flag,
+        )
+        self.generated += generated
+        if reached == CANCELLED:
+            raise _Cancelled
+        if reached == OVERFLOW:
+            raise _CountOverflow
+        if reached == TOO_MANY:
+            raise self._too_large()
+        return Layer(*(array[:reached].copy() for array in following))
+
+    def _choices(self, cell: tuple[int, int]) -> Iterator[tuple[Mask, int]]:
+        """The blocks that may have their lower left cell here: their cells and their moves."""
+        board, region = self._board, self._problem.region
+        for index, block in enumerate(self._problem.task.library):
+            placed = Placed(*block, *cell)
+            if _fits(board, placed):
+                cells = rules.cells_of(board, placed)
+                inside = not cells & (~region | self._problem.built)
+                if inside and _is_supported(board, placed, region):
+                    yield cells, index * board.size + board.bit(*cell)
+
+    def _keep_answer(self, height: int, layer: Layer) -> None:
+        """Note what is known of the rows below a height."""
+        region = self._problem.region & self._board.rows_below(height) | self._problem.built
+        same = layer.filled == pack([region], self._board.size)[0]
+        for state in np.flatnonzero(same if same.ndim == 1 else same.all(axis=1)):
+            words = layer.arrangements[state].tolist()
+            count = sum(word << WORD_BITS * index for index, word in enumerate(words))
+            self._answers[height] = int(layer.fewest[state]), count
+
+    def answer_at(self, height: int) -> tuple[int | None, int]:
+        """Fewest blocks and number of arrangements of the rows below a height."""
+        return self._answers.get(height, (None, 0))
+
+    def placements(self) -> tuple[Placed, ...]:
+        """A way to fill the region with fewest blocks, by rising bottom row."""
+        moves = []
+        state = 0  # the last layer has one state: the region
+        for parent, move in reversed(self._ways):
+            if move[state] != NO_MOVE:
+                moves.append(int(move[state]))
+            state = int(parent[state])
+        return placements_of(self._problem, moves[::-1])
+
+    def _too_large(self) -> LimitExceeded:
+        board = self._board
+        return LimitExceeded(
+            f'exact: a region of this shape on {board.width} x {board.height} cells needs more '
+            f'than the limit of {MAX_STATES} states'
+        )
+
+
+def _fits(board: Board, placed: Placed) -> bool:
+    return (
+        placed.column + placed.width <= board.width and placed.row + placed.height <= board.height
+    )
+
+
+def _is_supported(board: Board, placed: Placed, region: Mask) -> bool:
+    """Whether a placed block stands on the ground or, once all is built, on a filled cell."""
+    if placed.row == 0:
+        return True
+    return bool(board.rectangle(placed.column, placed.row - 1, placed.width, 1) & region)

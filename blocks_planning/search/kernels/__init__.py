@@ -1,0 +1,1 @@
+"""Compiled searches. Only :mod:`blocks_planning.search` calls them; arguments are trusted."""

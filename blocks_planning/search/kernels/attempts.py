@@ -1,0 +1,82 @@
+"""Attempt after attempt, until one succeeds or the budget is reached. Compiled.
+
+The loop is one for all searches: the type of the search, which carries its settings and its
+memory, decides which attempt is compiled into it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import overload
+
+from blocks_planning.board.kernels.compiling import kernel
+from blocks_planning.board.kernels.masks import load
+from blocks_planning.search.kernels import best_first, breadth_first, random_placement
+from blocks_planning.search.kernels.outcomes import CANCELLED, STUCK
+from blocks_planning.search.kernels.randomness import seed
+
+_ATTEMPTS = {
+    random_placement.RandomPlacement: random_placement.attempt,
+    breadth_first.BreadthFirst: breadth_first.attempt,
+    best_first.BestFirst: best_first.attempt,
+}
+
+
+class Question(NamedTuple):
+    """What is asked of a search; ``mask`` as in the tables."""
+
+    shadow: np.ndarray  # mask (1,): of the state
+    filled: int  # of the state [cells]
+    seed_words: np.ndarray  # uint64 (9,): trial seed, state, region
+    budget: int  # [states]
+    generator: np.ndarray  # uint64 (1,): memory
+    cancel: np.ndarray  # uint8 (1,): other than 0 to cancel
+    path: np.ndarray  # int64 (cells,): where the moves of the last attempt are written
+
+
+def attempt(search, tables, shadow, filled, generator, cancel, path):
+    """One attempt of whichever search it is.
+
+    Returns:
+        (outcome, number of moves written to ``path``, states evaluated)
+    """
+
+
+@overload(attempt)
+def _attempt(search, tables, shadow, filled, generator, cancel, path):
+    chosen = _ATTEMPTS[search.instance_class]
+
+    def run(search, tables, shadow, filled, generator, cancel, path):
+        return chosen(search, tables, shadow, filled, generator, cancel, path)
+
+    return run
+
+
+@kernel
+def run_attempts(search, tables, question):
+    """Make attempts until one is complete or cancelled, or the budget is reached.
+
+    There is always one attempt, and there are at most as many as the budget has states, so that
+    attempts that cost nothing come to an end.
+
+    Returns:
+        (outcome of the last attempt, its number of moves, its states evaluated, states evaluated
+        in all attempts, number of attempts)
+    """
+    generator = question.generator
+    shadow = load(question.shadow, 0)
+    total = 0
+    number = 0
+    while True:
+        if question.cancel[0] != 0:
+            return CANCELLED, 0, 0, total, number
+        seed(generator, question.seed_words, number)
+        outcome, length, cost = attempt(
+            search, tables, shadow, question.filled, generator, question.cancel, question.path
+        )
+        total += cost
+        number += 1
+        if outcome != STUCK or total >= question.budget or number >= question.budget:
+            return outcome, length, cost, total, number

@@ -1,0 +1,206 @@
+"""What an action-level search achieves, without sampling.
+
+One attempt of ``bfs`` or ``random`` is a walk: in every state it evaluates a number of states
+that depends on nothing else, and places one of some blocks with known probabilities (for bfs
+the share of best tree nodes behind each first placement). A dynamic program over the states that
+the walk can reach, by rising number of filled cells, therefore gives the distribution of what an
+attempt costs and whether it succeeds. States with the same shadow and
+equally many filled cells go on in the same way and are one.
+
+Probabilities are float64 sums of products: exact but for rounding, about 1e-12. Costs are kept
+to the single state [states]; those at or above the budget are put together, as they end a solve
+alike. How many attempts follow one another within the budget is a renewal sum over the costs of
+attempts that fail, done by fast Fourier transforms, which adds rounding of about 1e-12.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocks_planning.board import rules
+from blocks_planning.board.geometry import area
+from blocks_planning.errors import ConfigurationError, LimitExceeded
+from blocks_planning.search.attempt_costs import Arrivals, Costs, expected_attempts
+from blocks_planning.search.choices import Chooser, join_layers, layer_of, spread_at_random
+from blocks_planning.search.result import DEFAULT_BUDGET, MAX_BUDGET, CancelToken, Problem
+from blocks_planning.search.searches import BreadthFirst, RandomPlacement, Search
+from blocks_planning.settings import check_whole
+
+MAX_STATES = 2_000_000
+"""Most states that the dynamic program looks at, unless told otherwise."""
+MAX_EXACT_BUDGET = 10_000_000
+"""Largest budget for which costs are kept to the single state [states]."""
+
+
+@dataclass(frozen=True)
+class ExactPolicy:
+    """What is true of a search on a problem.
+
+    Attributes:
+        success: probability that one attempt fills the region.
+        cost: expected cost of an attempt [states].
+        cost_of_success: expected cost of an attempt that succeeds [states]; None if none can.
+        within_budget: probability that a solve succeeds, attempt after attempt, within ``budget``.
+        budget: b [states].
+        states: number of states that the dynamic program looked at.
+    """
+
+    success: float
+    cost: float
+    cost_of_success: float | None
+    within_budget: float
+    budget: int
+    states: int
+
+
+def analyse_policy(
+    problem: Problem,
+    search: Search,
+    budget: int = DEFAULT_BUDGET,
+    limit: int = MAX_STATES,
+    cancel: CancelToken | None = None,
+) -> ExactPolicy | None:
+    """The exact values of bfs or random on a problem; None if cancelled.
+
+    Args:
+        problem: state and region.
+        search: bfs or random.
+        budget: b [states].
+        limit: most states that the dynamic program looks at.
+        cancel: ends it from another thread.
+
+    Raises:
+        ConfigurationError: for another search, or a budget out of its range.
+        LimitExceeded: if more states can be reached than ``limit``.
+    """
+    cancel = cancel or CancelToken()
+    if isinstance(search, RandomPlacement):
+        check_whole('budget', budget, 0, MAX_BUDGET)
+        return _analyse_random(problem, budget, limit, cancel)
+    if not isinstance(search, BreadthFirst):
+        raise ConfigurationError(
+            f'search must be bfs or random for exact values, got {search.name!r}'
+        )
+    check_whole('budget', budget, 0, MAX_EXACT_BUDGET)
+    program = _Program(problem, search, budget, limit, cancel)
+    if not program.run():
+        return None
+    won, lost = program.won, program.lost
+    within = (
+        min(1.0, won.probability * expected_attempts(lost, budget)) if won.probability else 0.0
+    )
+    return ExactPolicy(
+        success=won.probability,
+        cost=won.expected + lost.expected,
+        cost_of_success=won.expected / won.probability if won.probability else None,
+        within_budget=within,
+        budget=budget,
+        states=program.states,
+    )
+
+
+def _analyse_random(
+    problem: Problem, budget: int, limit: int, cancel: CancelToken
+) -> ExactPolicy | None:
+    """Random placement costs nothing, so that only its success is to be found.
+
+    It takes states from which the region can still be filled, many at a time.
+    """
+    layers = {area(problem.built): [layer_of(problem)]}
+    target = area(problem.region)
+    looked_at = 0
+    for filled in range(area(problem.built), target):
+        if cancel.cancelled:
+            return None
+        if filled in layers:
+            layer = join_layers(layers.pop(filled))
+            looked_at += len(layer.chances)
+            if looked_at > limit:
+                raise _too_large(problem, 'random', limit)
+            for after, part in spread_at_random(problem, filled, layer).items():
+                layers.setdefault(after, []).append(part)
+    success = float(sum(part.chances.sum() for part in layers.get(target, [])))
+    return ExactPolicy(
+        success=success,
+        cost=0.0,
+        cost_of_success=0.0 if success else None,
+        within_budget=1 - (1 - success) ** max(1, budget),
+        budget=budget,
+        states=looked_at,
+    )
+
+
+def _too_large(problem: Problem, name: str, limit: int) -> LimitExceeded:
+    board = problem.task.board
+    return LimitExceeded(
+        f'exact-policy: {name} can reach more than the limit of {limit} states on this '
+        f'silhouette of {board.width} x {board.height} cells'
+    )
+
+
+class _Program:
+    """The dynamic program; ``won`` and ``lost`` are the ends of an attempt."""
+
+    def __init__(
+        self, problem: Problem, search: BreadthFirst, budget: int, limit: int, cancel: CancelToken
+    ) -> None:
+        self._problem = problem
+        self._search = search
+        self._budget = budget
+        self._limit = limit
+        self._cancel = cancel
+        self.won, self.lost = Arrivals(), Arrivals()
+        self.states = 0
+
+    def run(self) -> bool:
+        """Go through all states by rising number of filled cells; False if cancelled."""
+        problem = self._problem
+        start = Arrivals()
+        start.add(1.0, 0.0, Costs(np.zeros(1, np.int64), np.ones(1)))
+        shadow = rules.shadow(problem.task.board, problem.built)
+        target = area(problem.region)
+        layers: dict[int, dict[int, Arrivals]] = {area(problem.built): {shadow: start}}
+        depth = self._search.depth
+        chooser = Chooser(problem.task, problem.region, depth, self._cancel)
+        for filled in range(area(problem.built), target):
+            for state, arrivals in layers.pop(filled, {}).items():
+                self.states += 1
+                if self.states > self._limit:
+                    raise _too_large(problem, self._search.name, self._limit)
+                if not self._leave(chooser, state, filled, arrivals, layers):
+                    return False
+        for arrivals in layers.get(target, {}).values():
+            self.won.add(arrivals.probability, arrivals.expected, arrivals.costs())
+        return True
+
+    def _leave(
+        self,
+        chooser: Chooser,
+        shadow: int,
+        filled: int,
+        arrivals: Arrivals,
+        layers: dict[int, dict[int, Arrivals]],
+    ) -> bool:
+        """Hand what arrived in a state on to those after it; False if cancelled."""
+        choices = chooser.choices(shadow, filled)
+        if choices is None:
+            return False
+        probability = arrivals.probability
+        expected = arrivals.expected + probability * choices.evaluated
+        before = arrivals.costs()
+        cost = np.minimum(before.cost + choices.evaluated, self._budget)
+        after = Costs(cost, before.probability)
+        if choices.complete:
+            self.won.add(probability, expected, after)
+        elif not choices.ways:
+            self.lost.add(probability, expected, after)
+        total = sum(way.weight for way in choices.ways)
+        for way in choices.ways:
+            share = way.weight / total
+            layer = layers.setdefault(way.filled, {})
+            there = layer.setdefault(way.shadow, Arrivals())
+            part = Costs(after.cost, after.probability * share)
+            there.add(probability * share, expected * share, part)
+        return True

@@ -1,0 +1,93 @@
+"""What a solve is asked, what it answers, and how it is told to stop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from blocks_planning.board.blocks import Placed
+from blocks_planning.board.geometry import Mask
+from blocks_planning.board.task import Task
+from blocks_planning.errors import InvalidInput
+
+DEFAULT_BUDGET = 100_000
+"""The paper's budget b [states]."""
+MAX_BUDGET = (1 << 63) - 1
+
+
+class SolveStatus(str, Enum):
+    """How a solve ended.
+
+    ``limit_exceeded`` says that the search would have outgrown its memory, so that nothing is
+    known of the region.
+    """
+
+    SOLVED = 'solved'
+    UNSOLVABLE_PROVEN = 'unsolvable_proven'
+    BUDGET_EXHAUSTED = 'budget_exhausted'
+    LIMIT_EXCEEDED = 'limit_exceeded'
+    CANCELLED = 'cancelled'
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Fill ``region``, and nothing else, from the state in which ``built`` is filled.
+
+    Raises:
+        InvalidInput: if the region has cells off the board, or does not contain what is built.
+    """
+
+    task: Task
+    built: Mask
+    region: Mask
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.region <= self.task.board.full:
+            raise InvalidInput(f'region {self.region:#x} has cells off the board')
+        if self.built & ~self.region or self.built < 0:
+            raise InvalidInput(
+                f'region {self.region:#x} must contain what is built, {self.built:#x}'
+            )
+
+
+@dataclass(frozen=True)
+class SolveResult:
+    """The answer of a solve. Costs are states evaluated, as the search defines them.
+
+    Attributes:
+        status: how it ended; only ``solved`` comes with placements (or with none needed).
+        placements: from the problem's state to its filled region, in order.
+        solution_cost: states evaluated in the attempt that succeeded; 0 if none did.
+        planning_cost: states evaluated in all attempts.
+        attempts: number of attempts made; 0 where no search was needed.
+    """
+
+    status: SolveStatus
+    placements: tuple[Placed, ...] = ()
+    solution_cost: int = 0
+    planning_cost: int = 0
+    attempts: int = 0
+
+    @property
+    def solved(self) -> bool:
+        """Whether the region gets filled."""
+        return self.status is SolveStatus.SOLVED
+
+
+class CancelToken:
+    """Tells running solves to stop, from any thread."""
+
+    def __init__(self) -> None:
+        """A token that has not been used."""
+        self.flag = np.zeros(1, np.uint8)
+
+    def cancel(self) -> None:
+        """Make every solve that holds this token end as ``cancelled``, within 0.1 s."""
+        self.flag[0] = 1
+
+    @property
+    def cancelled(self) -> bool:
+        """Whether :meth:`cancel` was called."""
+        return bool(self.flag[0])

@@ -1,0 +1,170 @@
+"""The action-level searches by name, with their settings.
+
+A search is a frozen dataclass whose fields are its settings, all whole numbers or words. It has
+``run(problem, seed, budget, cancel)``, which may assume that the problem is neither solved
+already nor without a legal placement: :func:`.solve.solve` has looked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
+
+from blocks_planning import settings
+from blocks_planning.board.task import Task
+from blocks_planning.search.result import CancelToken, Problem, SolveResult
+from blocks_planning.settings import check_whole, check_word
+
+MAX_DEPTH = 64
+MAX_ITERATIONS = 1_000_000
+DIVISORS = ('smallest', 'mean', 'largest')
+EXECUTIONS = ('first', 'path')
+
+
+class Search(Protocol):
+    """An action-level search."""
+
+    name: ClassVar[str]
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        """Solve a problem within a budget [states].
+
+        Raises:
+            LimitExceeded: if the search would outgrow its memory.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class RandomPlacement:
+    """A legal placement, uniformly, until none is left. Cost 0."""
+
+    name: ClassVar[str] = 'random'
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        """See :class:`Search`."""
+        from blocks_planning.search import compiled
+
+        return compiled.solve_at_random(problem, seed, budget, cancel)
+
+
+@dataclass(frozen=True)
+class BreadthFirst:
+    """Breadth-first lookahead of ``depth`` placements (paper, section "Action-level planning").
+
+    It executes the first placement towards the best state seen, uniformly among equals, and
+    looks again; a complete state that is taken up for expansion is built whole.
+    """
+
+    name: ClassVar[str] = 'bfs'
+    depth: int = 3
+
+    def __post_init__(self) -> None:
+        check_whole('depth', self.depth, 1, MAX_DEPTH)
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        """See :class:`Search`."""
+        from blocks_planning.search import compiled
+
+        return compiled.solve_breadth_first(problem, self.depth, seed, budget, cancel)
+
+
+@dataclass(frozen=True)
+class AStar:
+    """A* for some iterations; f = blocks placed + cells left / divisor.
+
+    Attributes:
+        iterations: nodes taken from the queue in one search.
+        divisor: 'smallest' block area (the paper's text), 'mean' (its published numbers) or
+            'largest' (admissible).
+        execute: of a search that did not complete, the 'first' placement (the paper's text) or
+            the whole 'path' (its published numbers).
+
+    f is a float64, as in the paper's own program, and nodes are equal if their f is. With the
+    mean divisor 4.8 some values that are equal as fractions differ in the last bit, which the
+    results show.
+    """
+
+    name: ClassVar[str] = 'astar'
+    iterations: int = 4096
+    divisor: str = 'smallest'
+    execute: str = 'first'
+
+    def __post_init__(self) -> None:
+        check_whole('iterations', self.iterations, 2, MAX_ITERATIONS)
+        check_word('divisor', self.divisor, DIVISORS)
+        check_word('execute', self.execute, EXECUTIONS)
+
+    def divisor_of(self, task: Task) -> float:
+        """The divisor of the cells left [cells]."""
+        areas = [block.area for block in task.library]
+        kinds = {'smallest': min(areas), 'mean': sum(areas) / len(areas), 'largest': max(areas)}
+        return float(kinds[self.divisor])
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        """See :class:`Search`."""
+        from blocks_planning.search import compiled
+
+        return compiled.solve_best_first(
+            problem,
+            self.iterations,
+            1,
+            self.divisor_of(problem.task),
+            self.execute == 'path',
+            seed,
+            budget,
+            cancel,
+        )
+
+
+@dataclass(frozen=True)
+class BestFirst:
+    """A* with the blocks placed left out: the fewest cells left come first."""
+
+    name: ClassVar[str] = 'best_first'
+    iterations: int = 4096
+    execute: str = 'first'
+
+    def __post_init__(self) -> None:
+        check_whole('iterations', self.iterations, 2, MAX_ITERATIONS)
+        check_word('execute', self.execute, EXECUTIONS)
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        """See :class:`Search`."""
+        from blocks_planning.search import compiled
+
+        return compiled.solve_best_first(
+            problem, self.iterations, 0, 1.0, self.execute == 'path', seed, budget, cancel
+        )
+
+
+@dataclass(frozen=True)
+class Exact:
+    """The fewest blocks, or proof that there is no way. Not a model of people: the yardstick.
+
+    Its cost is the number of states that its dynamic program generates by placing a block.
+    """
+
+    name: ClassVar[str] = 'exact'
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        """See :class:`Search`. The seed and the budget play no part.
+
+        Raises:
+            LimitExceeded: if the problem is too large (see :mod:`.exact`).
+        """
+        from blocks_planning.search import exact
+
+        return exact.solve_exactly(problem, cancel)
+
+
+SEARCHES: Mapping[str, type[Any]] = {
+    search.name: search for search in (BreadthFirst, AStar, BestFirst, RandomPlacement, Exact)
+}
+
+
+def make_search(name: object, values: Mapping[str, Any]) -> Search:
+    """The search of a name; see :func:`blocks_planning.settings.make`."""
+    search: Search = settings.make('search', SEARCHES, name, values)
+    return search
