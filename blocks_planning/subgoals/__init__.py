@@ -1,0 +1,1 @@
+"""Subgoal-level planners: which part of the silhouette to build next."""
