@@ -1,0 +1,56 @@
+"""A trial inside one process: carries messages between the parts until there are none."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from blocks_planning.search.result import CancelToken, Problem, SolveStatus
+from blocks_planning.search.solve import solve
+from blocks_planning.trials import scribe, searcher, selector, world
+from blocks_planning.trials.messages import CancelTrial, Message, SearchAnswer, Solve, TrialStarted
+from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.spec import TrialSpec
+
+_PARTS = (world, selector, searcher, scribe)
+
+
+def run_trial(
+    spec: TrialSpec,
+    cancel: CancelToken | None = None,
+    observe: Callable[[Message], None] | None = None,
+) -> TrialRecord:
+    """Run a trial to its end.
+
+    Args:
+        spec: the trial.
+        cancel: ends it, from another thread, with status ``cancelled``.
+        observe: is shown every message, before the parts are; the trial goes on when it returns.
+    """
+    cancel = cancel or CancelToken()
+    memories: list[Any] = [part.Memory() for part in _PARTS]
+    messages: deque[Message] = deque([TrialStarted(spec.trial_id, spec)])
+    cancelling = False
+    while messages:
+        message = messages.popleft()
+        if observe is not None:
+            observe(message)
+        if isinstance(message, Solve):
+            messages.append(_answer(spec, message, cancel))
+        for index, part in enumerate(_PARTS):
+            memories[index], said = part.step(memories[index], message)
+            messages.extend(said)
+        if cancel.cancelled and not cancelling:
+            cancelling = True
+            messages = deque([CancelTrial(spec.trial_id)])
+    record: TrialRecord = memories[-1].record()
+    return record
+
+
+def _answer(spec: TrialSpec, question: Solve, cancel: CancelToken) -> Message:
+    problem = Problem(spec.task, *question.query)
+    result = solve(problem, spec.search, spec.seed, spec.budget, cancel)
+    if result.status is SolveStatus.CANCELLED:
+        return CancelTrial(spec.trial_id)
+    return SearchAnswer(spec.trial_id, question.query, result)

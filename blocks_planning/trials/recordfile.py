@@ -1,0 +1,78 @@
+"""The file that finished records are appended to, one in a line."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+from blocks_planning.errors import RecordError
+from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.status import TrialStatus
+
+
+class RecordFile:
+    """A file of trial records that survives being interrupted.
+
+    A record is on disk when :meth:`append` returns. What an interrupted writer left of its last
+    line is put into a file of its own beside it, never deleted.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Open or make the file.
+
+        Raises:
+            RecordError: if it can't be written, or has a line that is no record.
+        """
+        self._path = path
+        self.finished: set[str] = set()
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = path.open('ab+')
+        except OSError as error:
+            raise RecordError(f'{path}: cannot be written: {error.strerror}') from None
+        try:
+            self._file.seek(0)
+            self._read(self._file.read())
+        except RecordError:
+            self._file.close()
+            raise
+        except OSError as error:
+            self._file.close()
+            raise RecordError(f'{path}: cannot be written: {error.strerror}') from None
+
+    def _read(self, data: bytes) -> None:
+        whole, _, torn = data.rpartition(b'\n')
+        if torn:
+            with self._path.with_suffix('.torn').open('ab') as aside:
+                aside.write(torn + b'\n')
+            self._file.truncate(len(data) - len(torn))
+        for number, line in enumerate(whole.split(b'\n') if whole else [], start=1):
+            trial_id, is_finished = _read(line, f'{self._path}, line {number}')
+            if is_finished:
+                self.finished.add(trial_id)
+
+    def append(self, record: TrialRecord) -> None:
+        """Write a record and see it on disk.
+
+        Raises:
+            OSError: if the disk does not take it.
+        """
+        self._file.write(record.to_line().encode() + b'\n')
+        self._file.flush()
+        os.fsync(self._file.fileno())
+        if record.status is not TrialStatus.CANCELLED:
+            self.finished.add(record.spec.trial_id)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def _read(line: bytes, place: str) -> tuple[str, bool]:
+    """Which trial a record is of, and whether it came to its own end: cancelled ones did not."""
+    try:
+        record = json.loads(line)
+        return str(record['trial_id']), record['status'] != TrialStatus.CANCELLED.value
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise RecordError(f'{place}: is not a trial record; move the file away') from None

@@ -1,0 +1,163 @@
+"""Trial scripts: which trials to run, as YAML.
+
+::
+
+    stimuli: [cogsci2021/5, my/towers.txt]   # addresses, as on the command line
+    library: 1x2,2x1,2x2                     # optional: the paper's library if left out
+    seeds: 4                                 # how many, from first_seed upwards
+    first_seed: 0                            # optional
+    budget: 100000                           # optional [states]
+    searches:
+      - {name: bfs, depth: [2, 3]}
+    strategies:
+      - {name: none}
+      - {name: scoping, lambda: {from: 0, to: 0.008, count: 5}}
+
+A setting of a search or a strategy may be a list, or evenly spaced numbers ``{from, to, count}``
+with both ends: then there is one search or strategy for each value, and for each combination of
+values if there are several lists. The trials are all combinations, in the order strategies,
+searches, stimuli, seeds, the last the fastest. Paths of stimuli are relative to the working
+directory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from itertools import product
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from blocks_planning.board.blocks import PAPER_LIBRARY, Library, parse_library
+from blocks_planning.board.stimuli import find_stimuli
+from blocks_planning.board.task import Task
+from blocks_planning.located import Located, read_yaml
+from blocks_planning.search.randomness import MAX_SEED
+from blocks_planning.search.result import DEFAULT_BUDGET, MAX_BUDGET
+from blocks_planning.search.searches import make_search
+from blocks_planning.settings import check_whole
+from blocks_planning.subgoals.registry import make_strategy
+from blocks_planning.trials.spec import TrialSpec
+
+MAX_SEEDS = 1_000_000
+MAX_VALUES = 10_000
+MAX_TRIALS = 10_000_000
+
+
+class Tower(NamedTuple):
+    """A silhouette by its name, as a task."""
+
+    name: str
+    task: Task
+
+
+def read_script(path: Path) -> list[TrialSpec]:
+    """The trials of a script, in order.
+
+    Raises:
+        ConfigurationError: naming file, line and key, for what is unknown, missing, or out of its
+            range, for a trial that is there twice, and for more than ``MAX_TRIALS`` trials.
+    """
+    script = read_yaml(path)
+    top = script.entries(
+        'stimuli',
+        'seeds',
+        'searches',
+        'strategies',
+        optional=('library', 'first_seed', 'budget'),
+    )
+    towers, seeds = read_towers(top), read_seeds(top)
+    strategies = read_planners(top['strategies'], make_strategy)
+    searches = read_planners(top['searches'], make_search)
+    budget = read_budget(top)
+    if len(towers) * len(seeds) * len(strategies) * len(searches) > MAX_TRIALS:
+        raise script.fail(f'describes more than {MAX_TRIALS} trials')
+    specs = [
+        TrialSpec(tower.name, tower.task, strategy, search, seed, budget)
+        for strategy in strategies
+        for search in searches
+        for tower in towers
+        for seed in seeds
+    ]
+    if len({spec.trial_id for spec in specs}) < len(specs):
+        raise script.fail('describes a trial twice')
+    return specs
+
+
+def read_towers(top: Mapping[str, Located]) -> list[Tower]:
+    """The towers of the keys ``stimuli`` and ``library``."""
+    library = PAPER_LIBRARY
+    if 'library' in top:
+        library = top['library'].check(lambda: parse_library(read_text(top['library'])))
+    return [tower for address in top['stimuli'].items() for tower in _towers(address, library)]
+
+
+def read_seeds(top: Mapping[str, Located]) -> tuple[int, ...]:
+    """The seeds of the keys ``seeds`` and ``first_seed``."""
+    count = read_whole(top['seeds'], 'seeds', 1, MAX_SEEDS)
+    first = 0
+    if 'first_seed' in top:
+        first = read_whole(top['first_seed'], 'first_seed', 0, MAX_SEED)
+    top['seeds'].check(lambda: check_whole('the last seed', first + count - 1, 0, MAX_SEED))
+    return tuple(range(first, first + count))
+
+
+def read_budget(top: Mapping[str, Located]) -> int:
+    """The budget of the key ``budget`` [states]."""
+    if 'budget' not in top:
+        return DEFAULT_BUDGET
+    return read_whole(top['budget'], 'budget', 0, MAX_BUDGET)
+
+
+def _towers(address: Located, library: Library) -> list[Tower]:
+    stimuli = address.check(lambda: find_stimuli(read_text(address)))
+    return [Tower(s.name, Task(s.board, s.silhouette, library)) for s in stimuli]
+
+
+def read_planners(listed: Located, make: Callable[[object, Mapping[str, Any]], Any]) -> list[Any]:
+    """Every thing that a list of names and settings describes."""
+    things = []
+    for item in listed.items():
+        entries = dict(item.mapping())
+        if 'name' not in entries:
+            raise item.fail("lacks the key 'name'")
+        name = entries.pop('name')
+        name.check(partial(make, name.plain(), {}))
+        for key, value in entries.items():  # a key is judged where it stands
+            value.check(partial(make, name.plain(), {key: _values(value)[0]}))
+        ranges = [_values(value) for value in entries.values()]
+        for combination in product(*ranges):
+            values = dict(zip(entries, combination, strict=True))
+            things.append(item.check(partial(make, name.plain(), values)))
+    return things
+
+
+def _values(value: Located) -> list[Any]:
+    """What a setting takes: one value, those of a list, or evenly spaced ones."""
+    if isinstance(value.content, list):
+        return [item.plain() for item in value.items()]
+    if not isinstance(value.content, dict):
+        return [value.content]
+    entries = value.entries('from', 'to', 'count')
+    count = read_whole(entries['count'], 'count', 2, MAX_VALUES)
+    first, last = _number(entries['from']), _number(entries['to'])
+    return [first + (last - first) * index / (count - 1) for index in range(count)]
+
+
+def read_whole(value: Located, name: str, least: int, most: int) -> int:
+    """A whole number from ``least`` to ``most``."""
+    value.check(lambda: check_whole(name, value.plain(), least, most))
+    return int(value.content)
+
+
+def _number(value: Located) -> float:
+    if isinstance(value.content, bool) or not isinstance(value.content, (int, float)):
+        raise value.fail(f'expected a number, got {value.plain()!r}')
+    return float(value.content)
+
+
+def read_text(value: Located) -> str:
+    """A text that is not empty."""
+    if not isinstance(value.content, str) or not value.content:
+        raise value.fail(f'expected a text, got {value.plain()!r}')
+    return value.content

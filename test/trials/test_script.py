@@ -1,0 +1,283 @@
+"""Trial scripts: what they expand to, and what is refused where."""
+
+from __future__ import annotations
+
+import json
+import re
+from itertools import product
+from pathlib import Path
+
+import pytest
+from builders import CHAIR, spec
+from source_imports import ROOT
+
+from blocks_planning.board.blocks import PAPER_LIBRARY, Block
+from blocks_planning.board.stimuli import find_stimuli
+from blocks_planning.errors import ConfigurationError, RecordError
+from blocks_planning.search.result import DEFAULT_BUDGET
+from blocks_planning.trials.local import run_trial
+from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.recordfile import RecordFile
+from blocks_planning.trials.script import read_script
+from blocks_planning.trials.spec import TrialSpec
+
+GOOD = """\
+stimuli: [cogsci2021/5]
+seeds: 1
+searches:
+  - {name: bfs, depth: 2}
+strategies:
+  - {name: scoping, lambda: 0.002}
+"""
+
+
+def read(folder: Path, text: str) -> list[TrialSpec]:
+    """The trials of a script."""
+    path = folder / 'trials.yaml'
+    path.write_text(text, encoding='utf-8')
+    return read_script(path)
+
+
+def test_least_that_a_script_says(tmp_path: Path) -> None:
+    (trial,) = read(tmp_path, GOOD)
+    (stimulus,) = find_stimuli('cogsci2021/5')
+    assert trial == TrialSpec(
+        stimulus='cogsci2021/5',
+        task=trial.task,
+        strategy=spec(strategy='scoping', lam=0.002).strategy,
+        search=spec(search='bfs', depth=2).search,
+        seed=0,
+        budget=DEFAULT_BUDGET,
+    )
+    assert (trial.task.board, trial.task.silhouette) == (stimulus.board, stimulus.silhouette)
+    assert trial.task.library == PAPER_LIBRARY
+
+
+def test_order_is_strategies_searches_stimuli_seeds(tmp_path: Path) -> None:
+    trials = read(
+        tmp_path,
+        """\
+        stimuli: [cogsci2021/9, cogsci2021/2]
+        library: 2x1,1x2
+        seeds: 2
+        first_seed: 7
+        budget: 500
+        searches:
+          - {name: random}
+          - {name: bfs, depth: [3, 1]}
+        strategies:
+          - {name: none}
+          - {name: scoping, lambda: {from: 0, to: 1, count: 3}, commit: [action, subgoal]}
+        """,
+    )
+    strategies = [
+        ('none', None, None),
+        *(('scoping', lam, commit) for lam in (0.0, 0.5, 1.0) for commit in ('action', 'subgoal')),
+    ]
+    searches = [('random', {}), ('bfs', {'depth': 3}), ('bfs', {'depth': 1})]
+    expected = list(product(strategies, searches, ('cogsci2021/9', 'cogsci2021/2'), (7, 8), [500]))
+    found = []
+    for trial in trials:
+        said = trial.to_json()
+        strategy = (said['strategy'], said['lambda'], said['commit'])
+        search = (said['search'], said['search_settings'])
+        found.append((strategy, search, said['stimulus'], said['seed'], said['budget']))
+    assert found == expected
+    assert {trial.task.library for trial in trials} == {(Block(2, 1), Block(1, 2))}
+
+
+def test_whole_set_and_a_file_of_ones_own(tmp_path: Path) -> None:
+    path = tmp_path / 'towers.txt'
+    path.write_text('tower a\n##\n##\n\ntower b\n#.\n#.\n', encoding='utf-8')
+    trials = read(tmp_path, GOOD.replace('cogsci2021/5', f'cogsci2021, {path}'))
+    numbers = [f'cogsci2021/{number}' for number in range(1, 17)]
+    assert [trial.stimulus for trial in trials[:16]] == numbers
+    assert len(trials) == 18
+
+
+def test_last_seed_is_the_largest_there_is(tmp_path: Path) -> None:
+    trials = read(tmp_path, GOOD.replace('seeds: 1', f'seeds: 2\nfirst_seed: {2**64 - 2}'))
+    assert [trial.seed for trial in trials] == [2**64 - 2, 2**64 - 1]
+
+
+@pytest.mark.parametrize('name', ['demo', 'all_towers'])
+def test_scripts_that_ship_are_good(name: str) -> None:
+    trials = read_script(ROOT / 'config' / 'trials' / f'{name}.yaml')
+    assert len({trial.trial_id for trial in trials}) == len(trials) >= 3
+
+
+REFUSED: list[tuple[str, str, str, str]] = [
+    # What is replaced, by what; then the line with the key, and what is said about it.
+    ('seeds: 1', 'seeds: 1\nseed: 4', "line 3, key 'seed'", 'is not a key here'),
+    ('seeds: 1', 'seeds: 1\nseeds: 1', "line 3, key 'seeds'", 'is there twice'),
+    ('seeds: 1\n', '', 'line 1', "lacks the key 'seeds'"),
+    ('seeds: 1', 'seeds: 0', "line 2, key 'seeds'", 'seeds must be a whole number .*, got 0'),
+    ('seeds: 1', 'seeds: many', "line 2, key 'seeds'", "got 'many'"),
+    ('seeds: 1', 'seeds: 1.0', "line 2, key 'seeds'", r'got 1\.0'),
+    ('seeds: 1', 'seeds: true', "line 2, key 'seeds'", 'got True'),
+    ('seeds: 1', 'seeds:', "line 2, key 'seeds'", 'got None'),
+    ('seeds: 1', 'seeds: [1]', "line 2, key 'seeds'", r'got \[1\]'),
+    ('seeds: 1', 'seeds: 2000000', "line 2, key 'seeds'", 'got 2000000'),
+    ('seeds: 1', 'seeds: 1\nfirst_seed: -1', "line 3, key 'first_seed'", 'got -1'),
+    ('seeds: 1', f'seeds: 2\nfirst_seed: {2**64 - 1}', "line 2, key 'seeds'", 'the last seed'),
+    ('seeds: 1', 'seeds: 1\nbudget: -5', "line 3, key 'budget'", 'budget must be .*, got -5'),
+    ('seeds: 1', 'seeds: 1\nbudget: .inf', "line 3, key 'budget'", 'got inf'),
+    ('seeds: 1', 'seeds: 1\nlibrary: 1y2', "line 3, key 'library'", "got '1y2'"),
+    ('seeds: 1', 'seeds: 1\nlibrary: 1x2,1x2', "line 3, key 'library'", '1x2 is listed twice'),
+    ('seeds: 1', 'seeds: 1\nlibrary: 1x17', "line 3, key 'library'", '1x17'),
+    ('seeds: 1', 'seeds: 1\nlibrary: 3', "line 3, key 'library'", 'expected a text, got 3'),
+    ('[cogsci2021/5]', '[]', "line 1, key 'stimuli'", 'at least one item'),
+    ('[cogsci2021/5]', 'cogsci2021/5', "line 1, key 'stimuli'", 'expected a list'),
+    ('[cogsci2021/5]', '[cogsci2021/99]', "line 1, key 'stimuli'", 'cogsci2021/99'),
+    ('[cogsci2021/5]', '[nowhere.txt]', "line 1, key 'stimuli'", 'nowhere.txt'),
+    ('[cogsci2021/5]', '[5]', "line 1, key 'stimuli'", 'expected a text, got 5'),
+    ('[cogsci2021/5]', '[cogsci2021/5, cogsci2021/5]', 'line 1', 'a trial twice'),
+    ('name: bfs', 'name: luck', "line 4, key 'name'", "search must be one of .*, got 'luck'"),
+    ('name: bfs, ', '', 'line 4', "lacks the key 'name'"),
+    ('- {name: bfs, depth: 2}', '- bfs', 'line 4', "expected keys with values, got 'bfs'"),
+    ('depth: 2', 'depth: 65', "line 4, key 'depth'", 'depth must be .*, got 65'),
+    ('depth: 2', 'depth: [1, deep]', 'line 4', "depth must be .*, got 'deep'"),
+    ('depth: 2', 'depth: [2, 2]', 'line 1', 'a trial twice'),
+    ('depth: 2', 'depth: []', "line 4, key 'depth'", 'at least one item'),
+    ('depth: 2', 'width: 2', "line 4, key 'width'", "has no setting 'width'; it has depth"),
+    ('depth: 2', 'depth: {from: 1, to: 2}', "line 4, key 'depth'", "lacks the key 'count'"),
+    ('lambda: 0.002', 'lambda: -1', "line 6, key 'lambda'", 'lambda must be .*, got -1'),
+    ('lambda: 0.002', 'lambda: .nan', "line 6, key 'lambda'", 'got nan'),
+    ('lambda: 0.002', 'lambda: 2e-3', "line 6, key 'lambda'", "got '2e-3'"),
+    ('lambda: 0.002', 'lambda: [0, 0.0]', 'line 1', 'a trial twice'),
+    ('lambda: 0.002', 'lambda: {from: 0, to: x, count: 2}', "line 6, key 'to'", "got 'x'"),
+    ('lambda: 0.002', 'lambda: {from: 0, to: 1, count: 1}', "line 6, key 'count'", 'got 1'),
+    ('lambda: 0.002', 'commit: never', "line 6, key 'commit'", "got 'never'"),
+    ('name: scoping', 'name: none', "line 6, key 'lambda'", "has no setting 'lambda'"),
+]
+
+
+@pytest.mark.parametrize(
+    ('old', 'new', 'place', 'said'),
+    [pytest.param(*case, id=case[1].replace('\n', ' ') or case[3]) for case in REFUSED],
+)
+def test_mistake_is_named_where_it_stands(
+    old: str, new: str, place: str, said: str, tmp_path: Path
+) -> None:
+    assert old in GOOD
+    with pytest.raises(ConfigurationError) as refused:
+        read(tmp_path, GOOD.replace(old, new, 1))
+    text = str(refused.value)
+    assert text.startswith(f'{tmp_path / "trials.yaml"}, {place}')
+    assert re.search(said, text)
+    assert '\n' not in text
+
+
+@pytest.mark.parametrize(
+    ('text', 'said'),
+    [
+        ('', 'is empty'),
+        ('# nothing\n', 'is empty'),
+        ('[1, 2]\n', 'line 1: expected keys with values'),
+        ('seeds: [1\n', 'line 2: is not YAML'),
+        ('seeds: !!python/object:os.system 1\n', 'line 1'),
+        ('a: &x [*x]\n', 'nested too deeply'),
+        ('? [1, 2]\n: 3\n', ''),
+        ('seeds: 2001-99-99\n', "line 1, key 'seeds': '2001-99-99' is no value"),
+        ('a: ' + '[' * 3000 + ']' * 3000, 'nested too deeply'),
+        ('<<: {seeds: 1}\n', "key '<<': is not a key here"),
+        ('a: 1\n---\nb: 1\n', 'is not YAML'),
+        ('seeds: ' + '9' * 5000 + '\n', "line 1, key 'seeds'"),
+    ],
+)
+def test_what_is_no_script_is_refused(text: str, said: str, tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError) as refused:
+        read(tmp_path, text)
+    assert str(tmp_path / 'trials.yaml') in str(refused.value)
+    assert said in str(refused.value)
+    assert '\n' not in str(refused.value)
+
+
+def test_file_that_can_not_be_read_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match=r'nowhere\.yaml: cannot be read'):
+        read_script(tmp_path / 'nowhere.yaml')
+    (tmp_path / 'bytes.yaml').write_bytes(b'seeds: \xff')
+    with pytest.raises(ConfigurationError, match=r'bytes\.yaml: is not a text file'):
+        read_script(tmp_path / 'bytes.yaml')
+
+
+def test_more_trials_than_anyone_has_time_for_are_refused(tmp_path: Path) -> None:
+    text = GOOD.replace('seeds: 1', 'seeds: 1000000').replace('cogsci2021/5', 'cogsci2021')
+    with pytest.raises(ConfigurationError, match='describes more than 10000000 trials'):
+        read(tmp_path, text)
+
+
+# The file of records
+
+
+def records(count: int = 3) -> list[TrialRecord]:
+    """Some records."""
+    return [run_trial(spec(CHAIR, seed=seed, depth=1, lam=0.1)) for seed in range(count)]
+
+
+def test_records_are_appended_and_found_again(tmp_path: Path) -> None:
+    path = tmp_path / 'deep' / 'trials.jsonl'
+    first, second, third = records()
+    file = RecordFile(path)
+    assert file.finished == set()
+    file.append(first)
+    assert path.read_text() == first.to_line() + '\n'
+    file.append(second)
+    assert file.finished == {first.spec.trial_id, second.spec.trial_id}
+    file.close()
+    again = RecordFile(path)
+    assert again.finished == {first.spec.trial_id, second.spec.trial_id}
+    again.append(third)
+    again.close()
+    assert path.read_text().splitlines() == [r.to_line() for r in (first, second, third)]
+
+
+@pytest.mark.parametrize('cut', [1, 10, 300, -1])
+def test_torn_tail_is_put_aside(cut: int, tmp_path: Path) -> None:
+    path = tmp_path / 'trials.jsonl'
+    first, second, _ = records()
+    torn = second.to_line()[:cut]
+    path.write_text(first.to_line() + '\n' + torn)
+    file = RecordFile(path)
+    assert file.finished == {first.spec.trial_id}
+    file.append(second)
+    file.close()
+    assert path.read_text().splitlines() == [first.to_line(), second.to_line()]
+    assert (tmp_path / 'trials.torn').read_text() == torn + '\n'
+
+
+def test_torn_tails_do_not_replace_each_other(tmp_path: Path) -> None:
+    path = tmp_path / 'trials.jsonl'
+    for torn in ('{"a', '{"b'):
+        path.write_text(torn)
+        RecordFile(path).close()
+        assert path.read_text() == ''
+    assert (tmp_path / 'trials.torn').read_text() == '{"a\n{"b\n'
+
+
+@pytest.mark.parametrize('line', ['', 'x', '{}', '[]', '1', 'null', '"trial_id"', '[' * 5000])
+def test_line_that_is_no_record_is_refused(line: str, tmp_path: Path) -> None:
+    path = tmp_path / 'trials.jsonl'
+    (first,) = records(1)
+    text = f'{first.to_line()}\n{line}\n{first.to_line()}\n'
+    path.write_text(text)
+    with pytest.raises(RecordError, match=r'trials\.jsonl, line 2: is not a trial record'):
+        RecordFile(path)
+    assert path.read_text() == text
+
+
+def test_place_that_can_not_be_written_is_refused(tmp_path: Path) -> None:
+    (tmp_path / 'file').write_text('')
+    with pytest.raises(RecordError, match=r'trials\.jsonl: cannot be written'):
+        RecordFile(tmp_path / 'file' / 'trials.jsonl')
+    with pytest.raises(RecordError, match='cannot be written'):
+        RecordFile(tmp_path)
+
+
+def test_records_of_a_file_are_json(tmp_path: Path) -> None:
+    path = tmp_path / 'trials.jsonl'
+    file = RecordFile(path)
+    (first,) = records(1)
+    file.append(first)
+    file.close()
+    assert json.loads(path.read_text()) == first.to_json()
