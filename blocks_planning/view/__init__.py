@@ -1,0 +1,1 @@
+"""Looking at trials: scenes, the terminal, and pictures in files."""

@@ -1,0 +1,133 @@
+"""The words and numbers that stand beside a tower, the same wherever it is drawn."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator
+from dataclasses import fields
+from math import inf
+from typing import Any
+
+from blocks_planning.search.result import SolveStatus
+from blocks_planning.settings import setting_name
+from blocks_planning.subgoals.decision import Candidate, Decision
+from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.trials.status import TrialStatus
+from blocks_planning.view import palette
+from blocks_planning.view.palette import Signs
+from blocks_planning.view.scene import Scene
+
+STATUS_WORDS = {
+    TrialStatus.BUILDING: 'building',
+    TrialStatus.SUCCESS: 'success',
+    TrialStatus.STUCK: 'stuck',
+    TrialStatus.GAVE_UP: 'gave up',
+    TrialStatus.CANCELLED: 'cancelled',
+}
+
+SOLVE_WORDS = {
+    SolveStatus.SOLVED: 'solved',
+    SolveStatus.UNSOLVABLE_PROVEN: 'unsolvable',
+    SolveStatus.BUDGET_EXHAUSTED: 'exhausted',
+    SolveStatus.LIMIT_EXCEEDED: 'too large',
+    SolveStatus.CANCELLED: 'cancelled',
+}
+
+
+def stimulus_of(spec: TrialSpec, width: int, signs: Signs = palette.UNICODE) -> str:
+    """The name of the silhouette on one line of at most ``width`` characters, its end kept."""
+    name = signs.shown(spec.stimulus)
+    return name if len(name) <= width else signs.more + name[len(name) + 1 - width :]
+
+
+def strategy_of(spec: TrialSpec) -> str:
+    """The subgoal planner with its settings, such as 'scoping, lambda 0.002'."""
+    return _with_settings(spec.strategy)
+
+
+def search_of(spec: TrialSpec) -> str:
+    """The search with its settings, such as 'bfs, depth 3'."""
+    return _with_settings(spec.search)
+
+
+def _with_settings(thing: Any) -> str:
+    """A name with its settings: numbers always, words where they are not the default."""
+    return ', '.join([thing.name, *_settings(thing)])
+
+
+def _settings(thing: Any) -> Iterator[str]:
+    for field in fields(thing):
+        value = getattr(thing, field.name)
+        if isinstance(value, (int, float)) or value != field.default:
+            text = f'{value:,}' if isinstance(value, int) else f'{value}'
+            yield f'{setting_name(field)} {text}'
+
+
+def counted(count: int, noun: str) -> str:
+    """A number of things, such as '1 block' or '1,200 blocks'."""
+    return f'{count:,} {noun}{"" if count == 1 else "s"}'
+
+
+def progress_of(scene: Scene) -> str:
+    """How much was built, such as '12 blocks, 3 subgoals'."""
+    record = scene.record
+    return f'{counted(record.blocks, "block")}, {counted(record.subgoals, "subgoal")}'
+
+
+def costs_of(scene: Scene) -> str:
+    """Both planning costs, such as 'action planning 120, subgoal planning 4,839 [states]'."""
+    record = scene.record
+    return (
+        f'action planning {record.action_planning_cost:,}, '
+        f'subgoal planning {record.subgoal_planning_cost:,} [states]'
+    )
+
+
+def outcome_of(scene: Scene, signs: Signs = palette.UNICODE) -> str:
+    """One line that says how a trial ended."""
+    name = signs.shown(scene.spec.stimulus)
+    return f'{name}: {STATUS_WORDS[scene.status]}, {progress_of(scene)}, {costs_of(scene)}'
+
+
+def shortlist(decision: Decision, most: int) -> list[int]:
+    """Indices of the candidates to show, in the order in which to show them.
+
+    All of them as they come, if they are ``most`` or fewer; else the chosen one and the best of
+    the rest, by value.
+    """
+    candidates = decision.candidates
+    if len(candidates) <= most:
+        return list(range(len(candidates)))
+
+    def rank(index: int) -> tuple[bool, float, int]:
+        value = candidates[index].value
+        return index != decision.chosen, inf if value is None else -value, index
+
+    return heapq.nsmallest(most, range(len(candidates)), key=rank)
+
+
+def numbers_of(candidate: Candidate) -> list[str]:
+    """r, c, V and status of a candidate, as the columns of a table."""
+    value = candidate.value
+    if value is None:
+        worth = '-'
+    else:
+        worth = f'{value:,.2f}' if abs(value) < 1000 else f'{value:,.0f}'
+    return [
+        f'{candidate.cells:,}',
+        f'{candidate.planning_cost:,}',
+        worth,
+        SOLVE_WORDS[candidate.status],
+    ]
+
+
+def heights_of(candidate: Candidate, width: int, signs: Signs = palette.UNICODE) -> str:
+    """The heights of a candidate's regions in at most ``width`` characters, the last left out.
+
+    >>> heights_of(Candidate((1, 3, 8), 9, 9, None, SolveStatus.SOLVED), width=4)
+    '1 3…'
+    """
+    text = ' '.join(map(str, candidate.heights))
+    if len(text) <= width:
+        return text
+    return text[:width].rpartition(' ')[0] + signs.more

@@ -1,0 +1,263 @@
+"""Pictures of trials in files: the finished tower, or its building block by block.
+
+The same record gives the same bytes, as long as the versions of matplotlib and pillow are the
+same.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from io import BytesIO
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from PIL import Image
+
+from blocks_planning.board.blocks import Placed
+from blocks_planning.board.geometry import Board, Cell, Mask
+from blocks_planning.errors import ConfigurationError
+from blocks_planning.trials.record import TrialRecord
+from blocks_planning.view import captions, palette
+from blocks_planning.view.scene import Scene, last_scene, scenes_of
+
+CELL_INCHES = 0.5
+MIN_WIDTH_INCHES = 4.8
+LINE_INCHES = 0.2
+TITLE_INCHES = 1.2
+MARGIN_INCHES = 0.15
+TITLE_SHARE = 0.95
+"""How much of the width a title may take; its letters get smaller if there are too many."""
+TITLE_CHARACTERS = 60
+
+DPI = 150
+ANIMATION_DPI = 80
+FRAME_MS = 400
+LAST_FRAME_MS = 3000
+
+INK, GRID, TARGET, PAPER = '#000000', '#ffffff', '#e4e4e4', '#ffffff'
+REGION_SHARE = 0.6
+"""How far the colour of cells that are to be filled leans towards white."""
+
+_METADATA: dict[str, dict[str, Any]] = {
+    '.png': {'Software': None},
+    '.svg': {'Date': None, 'Creator': 'blocks_planning'},
+    '.pdf': {'CreationDate': None, 'Creator': 'blocks_planning'},
+}
+SUFFIXES = (*_METADATA, '.gif')
+
+_STYLE = {
+    'font.family': 'DejaVu Sans',
+    'path.simplify': False,
+    'svg.fonttype': 'path',
+    'svg.hashsalt': 'blocks_planning',
+    'text.usetex': False,
+}
+
+
+def check_picture_path(path: Path) -> None:
+    """Refuse a path whose suffix is not one of ``SUFFIXES``, in capitals or not.
+
+    Raises:
+        ConfigurationError: naming the suffix and those that can be used.
+    """
+    if path.suffix.lower() not in SUFFIXES:
+        raise ConfigurationError(
+            f'{path}: the suffix of a picture must be one of {", ".join(SUFFIXES)}, '
+            f'got {path.suffix!r}'
+        )
+
+
+def save_picture(record: TrialRecord, path: Path) -> None:
+    """Draw a trial into a file.
+
+    Args:
+        record: the trial.
+        path: .png, .svg and .pdf show how it ended, .gif how it went on.
+
+    Raises:
+        ConfigurationError: if the suffix is another one, or the file can't be written.
+    """
+    check_picture_path(path)
+    suffix = path.suffix.lower()
+    data = _animation(record) if suffix == '.gif' else _drawn(last_scene(record), suffix, DPI)
+    try:
+        path.write_bytes(data)
+    except OSError as error:
+        raise ConfigurationError(f'{path}: cannot be written: {error.strerror}') from None
+
+
+def draw_scene(axes: Axes, scene: Scene) -> None:
+    """Draw the board of a scene: target, region, blocks with their numbers, outline and ground.
+
+    Args:
+        axes: gets the limits of the board [cells], equal scales and no ticks. Lines and numbers
+            are sized for the place that it has in its figure now.
+        scene: what there is to see.
+    """
+    board, silhouette = scene.task.board, scene.task.silhouette
+    cell = _cell_points(axes, board)
+    thin, thick = cell / 24, cell / 12
+    region = palette.blend(palette.colour_of(scene.record.subgoals - 1), REGION_SHARE)
+    for cells, colour in (silhouette & ~scene.built, TARGET), (scene.region, region):
+        squares = [Placed(1, 1, *square) for square in board.cells(cells)]
+        _add_rectangles(axes, squares, [colour] * len(squares), GRID, thin)
+    placed = [block.placed for block in scene.blocks]
+    fills = palette.fills_of(scene.blocks)
+    _add_rectangles(axes, placed, fills, INK, thin)
+    for number, (rectangle, fill) in enumerate(zip(placed, fills, strict=True), start=1):
+        axes.text(
+            rectangle.column + rectangle.width / 2,
+            rectangle.row + rectangle.height / 2,
+            str(number),
+            color=palette.ink_on(fill),
+            fontsize=cell / 3,
+            ha='center',
+            va='center_baseline',
+        )
+    axes.add_collection(
+        LineCollection(
+            list(outline(board, silhouette)),
+            colors=INK,
+            linewidths=thick,
+            capstyle='projecting',
+            clip_on=False,
+        ),
+        autolim=False,
+    )
+    axes.plot([0, board.width], [0, 0], color=INK, linewidth=2 * thick, clip_on=False)
+    axes.set(xlim=(0, board.width), ylim=(0, board.height), aspect='equal')
+    axes.set_axis_off()
+
+
+def outline(board: Board, mask: Mask) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
+    """The border of a set of cells, as straight lines from (x, y) to (x, y) [cells]."""
+
+    def differ(one: Cell, other: Cell) -> bool:
+        return (one in cells) != (other in cells)
+
+    cells = set(board.cells(mask))
+    columns, rows = range(board.width + 1), range(board.height + 1)
+    for x in columns:
+        for low, high in _runs(differ((x - 1, row), (x, row)) for row in rows):
+            yield (x, low), (x, high)
+    for y in rows:
+        for left, right in _runs(differ((column, y - 1), (column, y)) for column in columns):
+            yield (left, y), (right, y)
+
+
+def _runs(marks: Iterable[bool]) -> Iterator[tuple[int, int]]:
+    """Where each run of true values begins, and where it is over."""
+    for marked, run in groupby(enumerate(marks), key=lambda item: item[1]):
+        if marked:
+            indices = [index for index, _ in run]
+            yield indices[0], indices[-1] + 1
+
+
+def _add_rectangles(
+    axes: Axes, rectangles: Sequence[Placed], fills: Sequence[str], edge: str, line: float
+) -> None:
+    corners = [
+        [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+        for width, height, x, y in rectangles
+    ]
+    axes.add_collection(
+        PolyCollection(corners, facecolors=fills, edgecolors=edge, linewidths=line),
+        autolim=False,
+    )
+
+
+def _cell_points(axes: Axes, board: Board) -> float:
+    """The length of a cell's side when the board is fitted into the axes [points]."""
+    inches = axes.get_window_extent().transformed(axes.figure.dpi_scale_trans.inverted())
+    return 72 * min(inches.width / board.width, inches.height / board.height)
+
+
+def _figure(scene: Scene) -> Figure:
+    """A figure with the board of a scene and a title."""
+    board = scene.task.board
+    board_width, board_height = CELL_INCHES * board.width, CELL_INCHES * board.height
+    width = max(board_width + 2 * MARGIN_INCHES, MIN_WIDTH_INCHES)
+    height = board_height + 2 * MARGIN_INCHES + TITLE_INCHES
+    figure = Figure(figsize=(width, height), facecolor=PAPER)
+    left, bottom = (width - board_width) / 2, MARGIN_INCHES
+    axes = figure.add_axes(
+        (left / width, bottom / height, board_width / width, board_height / height)
+    )
+    draw_scene(axes, scene)
+    for line, text in enumerate(_title(scene), start=1):
+        size, weight = (11, 'bold') if line == 1 else (9, 'normal')
+        written = figure.text(
+            0.5,
+            1 - (MARGIN_INCHES + line * LINE_INCHES) / height,
+            text,
+            color=INK,
+            fontsize=size,
+            fontweight=weight,
+            ha='center',
+            va='baseline',
+            parse_math=False,
+        )
+        excess = written.get_window_extent().width / (TITLE_SHARE * figure.bbox.width)
+        written.set_fontsize(size / max(excess, 1))
+    return figure
+
+
+def _title(scene: Scene) -> list[str]:
+    spec = scene.spec
+    status = captions.STATUS_WORDS[scene.status]
+    return [
+        f'{captions.stimulus_of(spec, TITLE_CHARACTERS - len(status))}: {status}',
+        captions.strategy_of(spec),
+        captions.search_of(spec),
+        captions.progress_of(scene),
+        captions.costs_of(scene),
+    ]
+
+
+def _drawn(scene: Scene, suffix: str, dpi: int) -> bytes:
+    """A file with a scene."""
+    file = BytesIO()
+    with mpl.rc_context(_STYLE), warnings.catch_warnings():
+        # The name of a stimulus may hold signs that the font lacks; they become boxes.
+        warnings.filterwarnings('ignore', 'Glyph .* missing', UserWarning)
+        figure = _figure(scene)
+        figure.savefig(file, format=suffix[1:], dpi=dpi, metadata=_METADATA[suffix])
+    return file.getvalue()
+
+
+def _animation(record: TrialRecord) -> bytes:
+    """A GIF of all scenes of a trial."""
+    colours = _colours(record)
+    images = [_image(scene, colours) for scene in scenes_of(record)]
+    durations = [FRAME_MS] * (len(images) - 1) + [LAST_FRAME_MS]
+    file = BytesIO()
+    images[0].save(
+        file, 'GIF', save_all=True, append_images=images[1:], duration=durations, loop=0
+    )
+    return file.getvalue()
+
+
+def _image(scene: Scene, colours: Image.Image) -> Image.Image:
+    """A scene in the colours of a palette."""
+    with Image.open(BytesIO(_drawn(scene, '.png', ANIMATION_DPI))) as image:
+        return image.convert('RGB').quantize(palette=colours, dither=Image.Dither.NONE)
+
+
+def _colours(record: TrialRecord) -> Image.Image:
+    """An image with the palette that the scenes of a trial need."""
+    scenes = list(scenes_of(record))
+    colours = set(palette.fills_of(scenes[-1].blocks))
+    colours |= {
+        palette.blend(palette.colour_of(scene.record.subgoals - 1), REGION_SHARE)
+        for scene in scenes
+    }
+    greys = {f'#{level:02x}{level:02x}{level:02x}' for level in (*range(0, 256, 17), 0xE4)}
+    image = Image.new('P', (1, 1))
+    image.putpalette(bytes.fromhex(''.join(sorted(colours | greys)).replace('#', '')))
+    return image

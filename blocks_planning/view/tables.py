@@ -1,0 +1,101 @@
+"""Tables of trials."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import groupby
+from statistics import fmean
+from typing import Literal
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.status import TrialStatus
+
+_COLUMNS = ('blocks', 'subgoals', 'action cost', 'subgoal cost', 'solution cost')
+
+
+def print_summaries(records: Sequence[TrialRecord], console: Console | None = None) -> None:
+    """Print a summary for each planner, in the order in which they come first."""
+    by_planner: dict[str, list[TrialRecord]] = {}
+    for record in records:
+        by_planner.setdefault(_planner(record), []).append(record)
+    for group in by_planner.values():
+        print_summary(group, console)
+
+
+def print_summary(records: Sequence[TrialRecord], console: Console | None = None) -> None:
+    """Print a row per stimulus: its one trial, or means over its successful trials.
+
+    Costs are states evaluated; those of action and subgoal planning count every attempt.
+    """
+    console = console or Console()
+    groups = [list(group) for _, group in groupby(records, lambda r: r.spec.stimulus)]
+    single = all(len(group) == 1 for group in groups)
+    table = Table(
+        box=box.SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+        caption=_caption(records, single),
+        caption_justify='left',
+    )
+    # Numbers are never cut. A long name takes what room is left, and several lines.
+    rows = [_row(group, single) for group in groups]
+    titles = ['status' if single else 'success', *_COLUMNS]
+    widths = [
+        max(len(text) for text in (*title.split(), *(row[index] for row in rows)))
+        for index, title in enumerate(titles, start=1)
+    ]
+    longest = max(len(text) for text in ('stimulus', *(row[0] for row in rows)))
+    room = console.width - sum(widths) - 2 * (len(titles) + 1) - 1
+    table.add_column('stimulus', overflow='fold', width=max(8, min(longest, room)))
+    for title, width in zip(titles, widths, strict=True):
+        justify: Literal['left', 'right'] = 'right' if title in _COLUMNS else 'left'
+        table.add_column(title, justify=justify, width=width)
+    for stimulus, *rest in rows:
+        table.add_row(Text(stimulus), *rest)
+    console.print(_planner(records[0]), highlight=False)
+    console.print(table)
+
+
+def _planner(record: TrialRecord) -> str:
+    """Who planned, with all settings."""
+    spec = record.spec.to_json()
+    keys = ('strategy', 'lambda', 'commit', 'search')
+    planner = ', '.join(f'{key} {spec[key]}' for key in keys if spec[key] is not None)
+    settings = ', '.join(f'{key} {value}' for key, value in spec['search_settings'].items())
+    return f'{planner} ({settings})' if settings else planner
+
+
+def _row(group: list[TrialRecord], single: bool) -> list[str]:
+    done = group if single else [r for r in group if r.status is TrialStatus.SUCCESS]
+    status = group[0].status.value if single else f'{len(done)}/{len(group)}'
+    columns = zip(*(_numbers(record) for record in done), strict=True)
+    means = [_mean(column) for column in columns] or ['-'] * len(_COLUMNS)
+    return [group[0].spec.stimulus, status, *means]
+
+
+def _numbers(record: TrialRecord) -> tuple[int, ...]:
+    return (
+        record.blocks,
+        record.subgoals,
+        record.action_planning_cost,
+        record.subgoal_planning_cost,
+        record.solution_cost,
+    )
+
+
+def _mean(numbers: Sequence[int]) -> str:
+    mean = fmean(numbers)
+    return f'{mean:,.0f}' if mean == int(mean) or mean >= 100 else f'{mean:.1f}'
+
+
+def _caption(records: Sequence[TrialRecord], single: bool) -> str:
+    successes = sum(record.status is TrialStatus.SUCCESS for record in records)
+    share = f'{successes} of {len(records)} trials rebuilt the tower perfectly.'
+    what = 'Costs are states evaluated' + (
+        '.' if single else ', means over the successful trials.'
+    )
+    return f'{share} {what}'

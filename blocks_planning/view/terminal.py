@@ -1,0 +1,118 @@
+"""Watching a trial in a terminal."""
+
+from __future__ import annotations
+
+from time import monotonic, sleep
+
+from rich.console import Console
+from rich.live import Live
+from rich.table import Table
+from rich.text import Text
+
+from blocks_planning.search.result import CancelToken
+from blocks_planning.trials.local import run_trial
+from blocks_planning.trials.messages import Message, PlaceBlock
+from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.view import palette
+from blocks_planning.view.board import board_text, scale_for, size_at
+from blocks_planning.view.captions import outcome_of
+from blocks_planning.view.palette import Signs
+from blocks_planning.view.panel import MIN_WIDTH, panel
+from blocks_planning.view.scene import Scene, last_scene, scene_after, scene_of
+
+GAP = 3
+"""Between board and panel [characters]."""
+ROOM = 2
+"""Lines below the frame for the cursor and for what is printed next."""
+PATIENCE_S = 0.02
+"""How often a pause looks whether the trial was cancelled [s]."""
+
+
+def watch_trial(
+    spec: TrialSpec, console: Console, cancel: CancelToken, pause_s: float
+) -> TrialRecord:
+    """Run a trial and show how it goes on.
+
+    In a terminal every decision and placement is drawn over the one before. Anything else, such
+    as a pipe or a terminal that can't move its cursor, gets the last picture and a line on how
+    the trial ended.
+
+    Args:
+        spec: the trial.
+        console: where to draw.
+        cancel: ends the trial, and a pause, from another thread or a signal handler.
+        pause_s: how long every decision and placement stays [s]; plays no part outside a terminal.
+    """
+    if console.is_interactive and console.file.isatty():
+        return _watch_live(spec, console, cancel, pause_s)
+    record = run_trial(spec, cancel)
+    print_outcome(record, console)
+    return record
+
+
+def print_outcome(record: TrialRecord, console: Console) -> None:
+    """Print the last picture of a trial, and a line on how it ended."""
+    scene = last_scene(record)
+    board = scene.task.board
+    scale = min(scale_for(board, console.width, 1 << 10), 2)
+    signs = signs_for(console)
+    for text in board_text(scene, scale, signs), Text(outcome_of(scene, signs)):
+        console.print(text, soft_wrap=True)
+
+
+def frame(scene: Scene, width: int, height: int, signs: Signs = palette.UNICODE) -> Table:
+    """A scene's board and panel, beside each other or, if that is too wide, on one another.
+
+    The board is drawn as large as ``width`` x ``height`` characters allow.
+    """
+    board = scene.task.board
+    scale = scale_for(board, width - GAP - MIN_WIDTH, height)
+    wide, high = size_at(board, scale)
+    picture = board_text(scene, scale, signs)
+    grid = Table.grid(padding=(0, GAP, 0, 0))
+    if width - GAP - wide >= MIN_WIDTH:
+        grid.add_row(picture, panel(scene, width - GAP - wide, height, signs))
+    else:
+        grid.add_row(picture)
+        if height > high:
+            grid.add_row(panel(scene, width, height - high, signs))
+    return grid
+
+
+def signs_for(console: Console) -> Signs:
+    """The characters that a console can show."""
+    return palette.ASCII if console.options.ascii_only else palette.UNICODE
+
+
+def _watch_live(
+    spec: TrialSpec, console: Console, cancel: CancelToken, pause_s: float
+) -> TrialRecord:
+    scene = scene_of(spec)
+
+    def drawn() -> Table:
+        height = max(console.height - ROOM, 1)
+        return frame(scene, console.width, height, signs_for(console))
+
+    with Live(drawn(), console=console, auto_refresh=False, vertical_overflow='crop') as live:
+
+        def observe(message: Message) -> None:
+            nonlocal scene
+            if isinstance(message, PlaceBlock):
+                wait(cancel, pause_s)
+            after = scene_after(scene, message)
+            if after is not scene:
+                scene = after
+                live.update(drawn(), refresh=True)
+
+        record = run_trial(spec, cancel, observe)
+        scene = last_scene(record)
+        live.update(drawn(), refresh=True)
+    return record
+
+
+def wait(cancel: CancelToken, duration_s: float) -> None:
+    """Wait, but not longer than until the token is used."""
+    end = monotonic() + duration_s
+    while not cancel.cancelled and (left := end - monotonic()) > 0:
+        sleep(min(left, PATIENCE_S))
