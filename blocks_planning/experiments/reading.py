@@ -1,0 +1,77 @@
+"""Reading the specification of a sweep.
+
+::
+
+    name: lambdas                # of the sweep
+    stimuli: [cogsci2021]        # addresses, as on the command line
+    library: 1x2,2x1,2x2         # optional: the paper's library if left out
+    seeds: 32                    # how many, from first_seed upwards
+    first_seed: 0                # optional
+    experiments:
+      - name: bfs                # rows of the tables say which experiment they belong to
+        budget: 100000           # optional [states]
+        searches:
+          - {name: bfs, depth: [2, 3]}
+        strategies:
+          - {name: scoping, lambda: {from: 0, to: 0.008, count: 64}}
+
+A setting of a search or a strategy may be a list, or evenly spaced numbers ``{from, to, count}``
+with both ends: then there is one search or strategy for each value, and for each combination of
+values if there are several lists. Paths of stimuli are relative to the working directory.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from blocks_planning.experiments.spec import Experiment, SweepSpec
+from blocks_planning.located import Located, read_yaml
+from blocks_planning.resources import resource_directories
+from blocks_planning.search.searches import make_search
+from blocks_planning.subgoals.registry import make_strategy
+from blocks_planning.trials.script import (
+    read_budget,
+    read_planners,
+    read_seeds,
+    read_text,
+    read_towers,
+)
+
+
+def find_sweep(name: str) -> Path:
+    """The file of a sweep that ships with the package ('paper'), or the path itself."""
+    for directory in resource_directories('config'):
+        path = directory / 'sweeps' / f'{name}.yaml'
+        if path.is_file():
+            return path
+    return Path(name)
+
+
+def read_sweep(path: Path) -> SweepSpec:
+    """Read a sweep.
+
+    Raises:
+        ConfigurationError: naming file, line and key, for what is unknown, missing, or out of its
+            range, and for two experiments of one name.
+    """
+    top = read_yaml(path).entries(
+        'name', 'stimuli', 'seeds', 'experiments', optional=('library', 'first_seed')
+    )
+    towers, seeds = tuple(read_towers(top)), read_seeds(top)
+    experiments: list[Experiment] = []
+    for item in top['experiments'].items():
+        experiment = _experiment(item)
+        if experiment.name in {other.name for other in experiments}:
+            raise item.fail(f'there is already an experiment {experiment.name!r}')
+        experiments.append(experiment)
+    return SweepSpec(read_text(top['name']), towers, seeds, tuple(experiments))
+
+
+def _experiment(item: Located) -> Experiment:
+    entries = item.entries('name', 'searches', 'strategies', optional=('budget',))
+    return Experiment(
+        name=read_text(entries['name']),
+        searches=tuple(read_planners(entries['searches'], make_search)),
+        strategies=tuple(read_planners(entries['strategies'], make_strategy)),
+        budget=read_budget(entries),
+    )

@@ -1,0 +1,143 @@
+"""A sweep: which trials to run, and how they are cut into chunks of work.
+
+A chunk is some seeds of one stimulus with every planner of one experiment: the largest piece
+whose trials can share their solves. Its identity is a digest of all that its results follow from.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from blocks_planning import __version__, settings
+from blocks_planning.board.blocks import format_library
+from blocks_planning.search.result import DEFAULT_BUDGET
+from blocks_planning.search.searches import Search
+from blocks_planning.subgoals.decision import Strategy
+from blocks_planning.trials.script import Tower
+from blocks_planning.trials.spec import TrialSpec
+
+SEEDS_PER_CHUNK = 8
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Every search with every strategy.
+
+    Attributes:
+        name: by which rows of the tables say where they come from.
+        searches: the action-level searches.
+        strategies: the subgoal planners.
+        budget: b of every solve [states]; 0 for a single attempt.
+    """
+
+    name: str
+    searches: tuple[Search, ...]
+    strategies: tuple[Strategy, ...]
+    budget: int = DEFAULT_BUDGET
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Some seeds of one tower in one experiment."""
+
+    experiment: Experiment
+    tower: Tower
+    seeds: tuple[int, ...]
+
+    def groups(self) -> Iterator[list[TrialSpec]]:
+        """The trials, in lists of those that share their solves."""
+        for search in self.experiment.searches:
+            for seed in self.seeds:
+                yield [
+                    TrialSpec(
+                        stimulus=self.tower.name,
+                        task=self.tower.task,
+                        strategy=strategy,
+                        search=search,
+                        seed=seed,
+                        budget=self.experiment.budget,
+                    )
+                    for strategy in self.experiment.strategies
+                ]
+
+    @property
+    def trials(self) -> int:
+        """Number of trials."""
+        experiment = self.experiment
+        return len(experiment.searches) * len(self.seeds) * len(experiment.strategies)
+
+    @cached_property
+    def chunk_id(self) -> str:
+        """A name made of everything that the results follow from, 16 hexadecimal digits."""
+        content = [
+            __version__,
+            experiment_to_json(self.experiment),
+            _tower_to_json(self.tower),
+            self.seeds,
+        ]
+        return _digest(content)
+
+
+@dataclass(frozen=True)
+class SweepSpec:
+    """A whole sweep: every experiment with every tower and every seed."""
+
+    name: str
+    towers: tuple[Tower, ...]
+    seeds: tuple[int, ...]
+    experiments: tuple[Experiment, ...]
+
+    def chunks(self) -> list[Chunk]:
+        """All work, in the order of the rows in the tables."""
+        starts = range(0, len(self.seeds), SEEDS_PER_CHUNK)
+        return [
+            Chunk(experiment, tower, self.seeds[start : start + SEEDS_PER_CHUNK])
+            for experiment in self.experiments
+            for tower in self.towers
+            for start in starts
+        ]
+
+    @cached_property
+    def sweep_id(self) -> str:
+        """A digest of all that the tables follow from, 16 hexadecimal digits."""
+        return _digest([chunk.chunk_id for chunk in self.chunks()])
+
+    def to_json(self) -> dict[str, Any]:
+        """The sweep for a manifest, with nothing left to defaults."""
+        return {
+            'name': self.name,
+            'seeds': list(self.seeds),
+            'towers': [_tower_to_json(tower) for tower in self.towers],
+            'experiments': [experiment_to_json(experiment) for experiment in self.experiments],
+        }
+
+
+def experiment_to_json(experiment: Experiment) -> dict[str, Any]:
+    """An experiment with every setting."""
+    return {
+        'name': experiment.name,
+        'budget': experiment.budget,
+        'searches': [_thing_to_json(search) for search in experiment.searches],
+        'strategies': [_thing_to_json(strategy) for strategy in experiment.strategies],
+    }
+
+
+def _thing_to_json(thing: Any) -> dict[str, Any]:
+    return {'name': thing.name, **settings.settings_of(thing)}
+
+
+def _tower_to_json(tower: Tower) -> dict[str, Any]:
+    return {
+        'name': tower.name,
+        'silhouette': tower.task.board.draw(tower.task.silhouette).split('\n'),
+        'library': format_library(tower.task.library),
+    }
+
+
+def _digest(content: Any) -> str:
+    return hashlib.blake2b(json.dumps(content).encode(), digest_size=8).hexdigest()

@@ -1,0 +1,126 @@
+"""Where a sweep is kept: a folder with its manifest, its tables, and parts while it runs.
+
+::
+
+    DIR/manifest.json       the sweep, and what ran it
+    DIR/trials.parquet      see :mod:`.tables`; written when everything is there
+    DIR/decisions.parquet
+    DIR/placements.parquet
+    DIR/parts/ID/           the tables of each chunk, until then
+
+A part is written under another name and then renamed, so that one that exists is whole. What is
+on disk says what is still to do.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from blocks_planning.errors import ConfigurationError
+from blocks_planning.experiments.spec import Chunk, SweepSpec
+from blocks_planning.experiments.tables import Tables, join
+
+MANIFEST = 'manifest.json'
+
+
+class Store:
+    """The folder of one sweep.
+
+    Raises:
+        ConfigurationError: if the folder can't be made, or holds another sweep.
+    """
+
+    def __init__(self, folder: Path, sweep: SweepSpec) -> None:
+        self.folder = folder
+        self._sweep = sweep
+        self._parts = folder / 'parts'
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise ConfigurationError(f'--out {folder}: {error.strerror}') from None
+        there = self.manifest()
+        if there and there.get('sweep_id') != sweep.sweep_id:
+            raise ConfigurationError(
+                f'--out {folder}: holds another sweep ({there.get("sweep_id")}, not '
+                f'{sweep.sweep_id}); name another folder'
+            )
+
+    def manifest(self) -> dict[str, Any]:
+        """What is written in the manifest; empty if there is none.
+
+        Raises:
+            ConfigurationError: if the file is no manifest.
+        """
+        path = self.folder / MANIFEST
+        if not path.exists():
+            return {}
+        try:
+            found = json.loads(path.read_text(encoding='utf-8'))
+        except (OSError, ValueError):
+            found = None
+        if not isinstance(found, dict):
+            raise ConfigurationError(f'{path}: is not the manifest of a sweep')
+        return found
+
+    def write_manifest(self, manifest: dict[str, Any]) -> None:
+        """Write the manifest, at once."""
+        part = self.folder / f'{MANIFEST}.part'
+        part.write_text(json.dumps(manifest, indent=2) + '\n', encoding='utf-8')
+        part.replace(self.folder / MANIFEST)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the tables are there."""
+        return all((self.folder / f'{name}.parquet').is_file() for name in Tables._fields)
+
+    def missing(self) -> list[Chunk]:
+        """The chunks that are still to be run."""
+        chunks = self._sweep.chunks()
+        return [chunk for chunk in chunks if not (self._parts / chunk.chunk_id).is_dir()]
+
+    def add(self, chunk: Chunk, tables: Tables) -> None:
+        """Keep the tables of a chunk."""
+        half = self._parts / f'{chunk.chunk_id}.half'
+        shutil.rmtree(half, ignore_errors=True)
+        half.mkdir(parents=True)
+        _write(half, tables)
+        half.rename(self._parts / chunk.chunk_id)
+
+    def finish(self) -> None:
+        """Write the tables from all parts, in the order of the sweep, and drop the parts."""
+        chunks = self._sweep.chunks()
+        half = self.folder / 'tables.half'
+        shutil.rmtree(half, ignore_errors=True)
+        half.mkdir()
+        _write(half, join([_read(self._parts / chunk.chunk_id) for chunk in chunks]))
+        for name in reversed(Tables._fields):
+            (half / f'{name}.parquet').replace(self.folder / f'{name}.parquet')
+        half.rmdir()
+        shutil.rmtree(self._parts)
+
+
+def read_table(folder: Path, name: str, columns: list[str] | None = None) -> pa.Table:
+    """One of the tables of a finished sweep, all columns or some.
+
+    Raises:
+        ConfigurationError: if the folder has none.
+    """
+    path = folder / f'{name}.parquet'
+    if not path.is_file():
+        raise ConfigurationError(f'{path}: is not there; has the sweep been finished?')
+    return pq.read_table(path, columns=columns)
+
+
+def _read(folder: Path) -> Tables:
+    return Tables(*(read_table(folder, name) for name in Tables._fields))
+
+
+def _write(folder: Path, tables: Tables) -> None:
+    for name, table in zip(Tables._fields, tables, strict=True):
+        pq.write_table(table, folder / f'{name}.parquet', compression='zstd')

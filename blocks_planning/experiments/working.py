@@ -1,0 +1,43 @@
+"""The work of a sweep: a chunk in, its tables out. Runs in any process on any machine."""
+
+from __future__ import annotations
+
+from blocks_planning.experiments.spec import Chunk
+from blocks_planning.experiments.tables import Failure, Tables, make_tables
+from blocks_planning.search.result import SolveResult, SolveStatus
+from blocks_planning.subgoals.decision import Query
+from blocks_planning.trials.following import follow
+from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.trials.status import TrialStatus
+
+
+def run_chunk(chunk: Chunk) -> Tables:
+    """Run the trials of a chunk, each solve once.
+
+    A trial that can't be run becomes a row that says why: one tower that outgrows a limit must
+    not cost the rest of a long sweep.
+    """
+    outcomes: list[TrialRecord | Failure] = []
+    for group in chunk.groups():
+        answers: dict[Query, SolveResult] = {}
+        outcomes += [_run(spec, answers) for spec in group]
+    return make_tables(chunk.experiment.name, outcomes)
+
+
+def _run(spec: TrialSpec, answers: dict[Query, SolveResult]) -> TrialRecord | Failure:
+    try:
+        record = follow(spec, answers)
+    except Exception as error:  # noqa: BLE001  it is kept, shown, and makes the sweep fail
+        return Failure(spec, f'{type(error).__name__}: {error}')
+    if _ended_at_a_limit(record):
+        return Failure(spec, f'{spec.search.name}: the search would have outgrown its memory')
+    return record
+
+
+def _ended_at_a_limit(record: TrialRecord) -> bool:
+    """Whether a planner gave up without knowing if there is a way."""
+    if record.status is not TrialStatus.GAVE_UP:
+        return False
+    candidates = record.decisions[-1].decision.candidates
+    return any(candidate.status is SolveStatus.LIMIT_EXCEEDED for candidate in candidates)

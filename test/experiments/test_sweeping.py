@@ -1,0 +1,176 @@
+"""Sweeps: the tables say what the records say, wherever and however often they are begun."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pytest
+from sweeps import STRATEGIES, sweep, tables_in
+
+from blocks_planning.errors import ConfigurationError
+from blocks_planning.experiments import running, sweeping, working
+from blocks_planning.experiments.spec import Chunk
+from blocks_planning.experiments.store import Store, read_table
+from blocks_planning.experiments.sweeping import run_sweep
+from blocks_planning.experiments.tables import SCHEMAS, Tables
+from blocks_planning.search.searches import BreadthFirst, Exact
+from blocks_planning.search.solve import solve
+from blocks_planning.trials.local import run_trial
+
+
+@pytest.fixture(scope='module')
+def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, pa.Table]:
+    """The tables of the sweep, run at once in one process."""
+    folder = tmp_path_factory.mktemp('whole')
+    run_sweep(sweep(), folder)
+    return tables_in(folder)
+
+
+def test_tables_say_what_the_records_say(whole: dict[str, pa.Table]) -> None:
+    specs = {s.trial_id: s for c in sweep(2).chunks() for group in c.groups() for s in group}
+    trials = {row['trial_id']: row for row in whole['trials'].to_pylist()}
+    assert len(trials) == whole['trials'].num_rows == 18 * 2 * 2 * len(STRATEGIES)
+    decisions, placements = whole['decisions'].to_pylist(), whole['placements'].to_pylist()
+    for trial_id, spec in list(specs.items())[::3]:
+        record = run_trial(spec)
+        row = trials[trial_id]
+        assert row['experiment'] == 'small'
+        assert row['error'] is None
+        said = record.to_json()
+        assert {key: row[key] for key in row if key in said} == {
+            key: said[key] for key in said if key in row
+        }
+        assert {key: row[key] for key in said['search_settings']} == said['search_settings']
+        mine = [r for r in decisions if r['trial_id'] == trial_id]
+        assert [r['built'] for r in mine] == [d['built'] for d in said['decisions']]
+        assert [r['subgoal_planning_cost'] for r in mine] == [
+            d['subgoal_planning_cost'] for d in said['decisions']
+        ]
+        assert [r['considered'] for r in mine] == [
+            sum(c['planning_cost'] for c in d['candidates']) for d in said['decisions']
+        ]
+        blocks = [r for r in placements if r['trial_id'] == trial_id]
+        assert [r['placement'] for r in blocks] == list(range(record.blocks))
+        assert [[r['width'], r['height'], r['column'], r['row']] for r in blocks] == said[
+            'placements'
+        ]
+
+
+def test_schemas(whole: dict[str, pa.Table]) -> None:
+    for name, schema in SCHEMAS._asdict().items():
+        assert whole[name].schema.equals(schema)
+
+
+def test_two_processes_give_identical_tables(tmp_path: Path, whole: dict[str, pa.Table]) -> None:
+    run_sweep(sweep(), tmp_path, workers=2)
+    assert tables_in(tmp_path) == whole
+
+
+@pytest.mark.parametrize('workers', [1, 2])
+def test_interrupted_sweep_goes_on(
+    tmp_path: Path, whole: dict[str, pa.Table], workers: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(done: int, total: int) -> None:
+        assert total == 360
+        if done >= 90:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_sweep(sweep(), tmp_path, workers, report=interrupt)
+    there = {part.name for part in (tmp_path / 'parts').iterdir()}
+    assert 1 <= len(there) < len(sweep().chunks())
+    (tmp_path / 'parts' / 'f00.half').mkdir()  # killed while it was written
+    ran: list[str] = []
+
+    def run(chunk: Chunk) -> Tables:
+        ran.append(chunk.chunk_id)
+        return working.run_chunk(chunk)
+
+    monkeypatch.setattr(running, 'run_chunk', run)
+    run_sweep(sweep(), tmp_path)
+    assert set(ran) == {chunk.chunk_id for chunk in sweep().chunks()} - there
+    assert tables_in(tmp_path) == whole
+    assert not (tmp_path / 'parts').exists()
+
+
+def test_finished_sweep_is_not_run_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = run_sweep(sweep(1), tmp_path)
+    monkeypatch.setattr(sweeping, 'run_here', lambda *_: pytest.fail('ran again'))
+    assert run_sweep(sweep(1), tmp_path) == first
+
+
+def test_each_solve_is_done_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+
+    def counted(problem: Any, search: Any, seed: int, budget: int) -> Any:
+        asked.append((problem.task, problem.built, problem.region, search, seed, budget))
+        return solve(problem, search, seed, budget)
+
+    monkeypatch.setattr('blocks_planning.trials.following.solve', counted)
+    for chunk in sweep(2).chunks():
+        working.run_chunk(chunk)
+    assert len(asked) == len(set(asked)) > 0
+
+
+def test_failed_trial_is_a_row_that_says_why(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def break_down(*_: Any) -> None:
+        raise RuntimeError('the yardstick broke')
+
+    monkeypatch.setattr(Exact, 'run', break_down)
+    summary = run_sweep(sweep(1, (Exact(), BreadthFirst(1))), tmp_path)
+    assert summary.failed == 2 * len(STRATEGIES)
+    assert summary.trials == 2 * summary.failed
+    [(error, count)] = summary.failures.items()
+    assert error == 'RuntimeError: the yardstick broke'
+    assert count == summary.failed
+    rows = read_table(tmp_path, 'trials').to_pylist()
+    failed = [row for row in rows if row['status'] == 'failed']
+    assert {row['search'] for row in failed} == {'exact'}
+    assert {row['blocks'] for row in failed} == {None}
+    others = {row['trial_id'] for row in failed} & {
+        row['trial_id'] for row in read_table(tmp_path, 'placements').to_pylist()
+    }
+    assert others == set()
+
+
+def test_trial_that_ends_at_a_limit_of_memory_has_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from blocks_planning.search import exact
+
+    monkeypatch.setattr(exact, 'MAX_STATES', 3)
+    summary = run_sweep(sweep(1, (Exact(), BreadthFirst(1))), tmp_path)
+    assert 0 < summary.failed < summary.trials
+    assert list(summary.failures) == ['exact: the search would have outgrown its memory']
+
+
+def test_folder_of_another_sweep_is_refused(tmp_path: Path) -> None:
+    run_sweep(sweep(1), tmp_path)
+    with pytest.raises(ConfigurationError, match='holds another sweep'):
+        run_sweep(sweep(2), tmp_path)
+
+
+def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
+    (tmp_path / 'file').write_text('')
+    with pytest.raises(ConfigurationError, match=f'--out {tmp_path}/file/x: Not a directory'):
+        Store(tmp_path / 'file' / 'x', sweep(1))
+
+
+def test_manifest_says_what_ran(tmp_path: Path) -> None:
+    run_sweep(sweep(1), tmp_path)
+    manifest = json.loads((tmp_path / 'manifest.json').read_text())
+    assert manifest['sweep_id'] == sweep(1).sweep_id
+    assert manifest['sweep']['seeds'] == [0]
+    assert manifest['sweep']['experiments'][0]['searches'][0] == {'name': 'bfs', 'depth': 2}
+    assert manifest['provenance']['libraries']['numpy']
+    assert manifest['provenance']['machine']['processors'] >= 1
+
+
+def test_missing_table_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match=r'trials.parquet: is not there'):
+        read_table(tmp_path, 'trials')
