@@ -1,0 +1,1 @@
+"""From tables of trials to statistics, figures and a report."""
