@@ -1,0 +1,101 @@
+"""Node ``action_searcher``: how a region is filled, and the placements that fill it.
+
+Searches run in threads of their own, so that the node answers while they do; they stop as soon as
+their trial is over.
+
+| | |
+|---|---|
+| listens | `trial`, `state`, `subgoal`, `outcome` (latched), `search/request` (stream) |
+| says | `search/result`, `action` (stream), `plan` (latched) |
+| parameters | `remind_period_s`; `workers`: searches at once |
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+from blocks_planning.ros.graph import ACTION_SEARCHER
+from blocks_planning.ros.parameters import Parameter
+from blocks_planning.ros.part_node import PartNode
+from blocks_planning.ros.runtime import run
+from blocks_planning.search.compiled import warm_up
+from blocks_planning.search.result import CancelToken, Problem, SolveStatus
+from blocks_planning.search.solve import solve
+from blocks_planning.trials import searcher
+from blocks_planning.trials.messages import (
+    Message,
+    SearchAnswer,
+    Solve,
+    TrialEnded,
+    TrialStarted,
+)
+
+WORKERS = Parameter('workers', 2, 'Searches that run at once.', (1, 64))
+
+
+class ActionSearcher(PartNode):
+    """The searcher, with threads to search in."""
+
+    def __init__(self, **options: Any) -> None:
+        """See :class:`PartNode`."""
+        super().__init__(ACTION_SEARCHER, searcher, (WORKERS,), **options)
+        self._cancel = CancelToken()
+        self._threads = ThreadPoolExecutor(self.values['workers'], 'search')
+        self._answers: deque[SearchAnswer | BaseException] = deque()
+        self._wake = self.create_guard_condition(self._deliver)
+
+    def begin(self, trial: TrialStarted) -> None:
+        """A new trial: what is searched for another one is of no use."""
+        if self.trial is None or self.trial.trial_id != trial.trial_id:
+            self._stop_searching()
+        super().begin(trial)
+
+    def take(self, message: Message) -> None:
+        """See :class:`PartNode`."""
+        if isinstance(message, TrialEnded):
+            self._stop_searching()
+        super().take(message)
+
+    def perform(self, message: Message) -> None:
+        """Search in a thread; the answer comes back to the thread of the node."""
+        assert isinstance(message, Solve)
+        assert self.trial is not None
+        self._threads.submit(self._search, self.trial, message, self._cancel)
+
+    def _search(self, trial: TrialStarted, question: Solve, cancel: CancelToken) -> None:
+        spec = trial.spec
+        try:
+            problem = Problem(spec.task, *question.query)
+            result = solve(problem, spec.search, spec.seed, spec.budget, cancel)
+        except BaseException as error:  # noqa: BLE001  raised again in the node's own thread
+            self._answers.append(error)
+        else:
+            if result.status is SolveStatus.CANCELLED:
+                return
+            self._answers.append(SearchAnswer(trial.trial_id, question.query, result))
+        self._wake.trigger()
+
+    def _deliver(self) -> None:
+        while self._answers:
+            answer = self._answers.popleft()
+            if isinstance(answer, BaseException):
+                raise answer
+            if self.trial is not None and answer.trial_id == self.trial.trial_id:
+                self.say(answer)
+                self.take(answer)
+
+    def _stop_searching(self) -> None:
+        self._cancel.cancel()
+        self._cancel = CancelToken()
+
+
+def main() -> None:
+    """Run the node until SIGINT or SIGTERM; kernels are compiled before it answers."""
+    warm_up()
+    run(lambda _: ActionSearcher())
+
+
+if __name__ == '__main__':
+    main()

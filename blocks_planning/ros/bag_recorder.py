@@ -1,0 +1,151 @@
+"""Node ``bag_recorder``: everything that is said, in a bag.
+
+The bag is a rosbag2 directory of MCAP files, see :mod:`.bagging`. Killing the node, or a power
+cut, loses at most the last ``flush_period_s``; started again, it repairs the bag and goes on.
+When the disk is full it warns once, keeps the messages for a while, and tries again.
+
+| | |
+|---|---|
+| listens | every topic |
+| parameters | `bag_dir`: a folder that does not exist, or holds a bag that was cut off; `flush_period_s`: how often everything is seen on disk; `split_bytes`: begin another file when one is so large, 0: never |
+"""
+
+from __future__ import annotations
+
+import time
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+from blocks_planning.ros.bagging.definitions import definition_of, type_hash_of
+from blocks_planning.ros.bagging.metadata import RecordedTopic, to_yaml
+from blocks_planning.ros.bagging.writer import BagWriter
+from blocks_planning.ros.graph import BAG_RECORDER
+from blocks_planning.ros.parameters import Parameter, declare
+from blocks_planning.ros.runtime import run
+from blocks_planning.ros.topics import Topic
+
+BAG_DIR = Parameter('bag_dir', 'bag', 'Folder of the bag: a new one, or of a bag cut off.')
+FLUSH_PERIOD = Parameter(
+    'flush_period_s', 1.0, 'How often everything is seen on disk [s].', (0.05, 60.0)
+)
+SPLIT_BYTES = Parameter(
+    'split_bytes', 0, 'Begin another file when one is so large [bytes]; 0: never.', (0, 2**40)
+)
+PARAMETERS = (BAG_DIR, FLUSH_PERIOD, SPLIT_BYTES)
+_FOREVER = {'sec': 9223372036, 'nsec': 854775807}
+
+
+class BagRecorder(Node):
+    """Hands every message, as it came, to a :class:`BagWriter`."""
+
+    drain_s = 0.1
+    """For what has arrived when the end comes."""
+
+    def __init__(self, **options: Any) -> None:
+        """Open the bag, then listen.
+
+        Raises:
+            BagError: if the bag can't be written.
+            ConfigurationError: for a parameter that is unknown or out of its range.
+        """
+        super().__init__(BAG_RECORDER.name, **options)
+        values = declare(self, PARAMETERS)
+        self._path = Path(values['bag_dir'])
+        topics = {topic: self.resolve_topic_name(topic.name) for topic in BAG_RECORDER.listens}
+        self._writer = BagWriter(
+            self._path,
+            [recorded_topic(topic, name) for topic, name in topics.items()],
+            values['split_bytes'],
+        )
+        self._fails = False
+        for repair in self._writer.repairs:
+            self.get_logger().warning(str(repair))
+        for topic, name in topics.items():
+            self.create_subscription(
+                topic.ros_type,
+                topic.name,
+                partial(self._record, name),
+                topic.subscription_qos,
+                raw=True,
+            )
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(values['flush_period_s'], self._flush, clock=steady)
+
+    @property
+    def count(self) -> int:
+        """Number of messages received."""
+        return self._writer.counts.total()
+
+    def _record(self, topic: str, data: bytes, info: dict[str, int]) -> None:
+        received_ns = info['received_timestamp'] or time.time_ns()
+        is_time = self._writer.add(topic, data, received_ns, info['source_timestamp'])
+        if is_time and not self._fails:
+            self._flush()
+
+    def _flush(self) -> None:
+        try:
+            self._writer.flush()
+        except OSError as error:
+            if not self._fails:
+                self.get_logger().error(
+                    f'{self._path}: nothing more can be written: {error.strerror}; what was '
+                    'written stays, and it is tried again'
+                )
+            self._fails = True
+            return
+        if self._fails:
+            lost = self._writer.lost
+            self.get_logger().warning(f'{self._path}: written again; {lost} messages lost')
+        self._fails = False
+
+    def finish(self) -> None:
+        """Finish the bag; nothing may be received any more."""
+        try:
+            self._writer.close()
+        except OSError as error:
+            self.get_logger().error(
+                f'{self._path}: cannot be finished: {error.strerror}; what was written stays; '
+                '`blocks-planning verify` repairs it'
+            )
+
+
+def recorded_topic(topic: Topic, name: str) -> RecordedTopic:
+    """What a bag says of a topic."""
+    package, ros_type = topic.ros_type.__module__.split('.')[0], topic.ros_type.__name__
+    full_type = f'{package}/msg/{ros_type}'
+    return RecordedTopic(
+        name=name,
+        ros_type=full_type,
+        definition=definition_of(full_type),
+        type_hash=type_hash_of(full_type),
+        offered_qos=to_yaml([offered_qos(topic.publisher_qos)]),
+    )
+
+
+def offered_qos(profile: QoSProfile) -> dict[str, Any]:
+    """A profile as rosbag2 writes it; what is not limited is written as forever."""
+    return {
+        'history': profile.history.short_key,
+        'depth': profile.depth,
+        'reliability': profile.reliability.short_key,
+        'durability': profile.durability.short_key,
+        'deadline': dict(_FOREVER),
+        'lifespan': dict(_FOREVER),
+        'liveliness': 'automatic',
+        'liveliness_lease_duration': dict(_FOREVER),
+        'avoid_ros_namespace_conventions': profile.avoid_ros_namespace_conventions,
+    }
+
+
+def main() -> None:
+    """Run the node until SIGINT or SIGTERM."""
+    run(lambda _: BagRecorder())
+
+
+if __name__ == '__main__':
+    main()

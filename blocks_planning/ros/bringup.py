@@ -1,0 +1,161 @@
+"""The whole graph as processes: brought up for a script, kept alive, and taken down."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import rclpy
+import rclpy.utilities
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+
+from blocks_planning.errors import BlocksPlanningError
+from blocks_planning.ros.domain import Domain
+from blocks_planning.ros.graph import WATCHER
+from blocks_planning.ros.processes import NodeProcess, stop_all
+from blocks_planning.ros.runtime import BAD_INPUT
+from blocks_planning.ros.trial_orchestrator import RECORDS, WAIT_FOR
+from blocks_planning.ros.watcher import Watcher
+from blocks_planning.view.scene import Scene
+
+_SPIN_S = 0.05
+
+
+@dataclass(frozen=True)
+class BringupSpec:
+    """What to bring up.
+
+    Attributes:
+        script: of the trials.
+        out: folder of the records and logs.
+        bag: folder of the bag; None for no bag.
+        namespace: of all nodes, '' for none.
+        domain: ROS domain; None for a free one.
+        placing_s: how long placing a block takes [s].
+    """
+
+    script: Path
+    out: Path
+    bag: Path | None = None
+    namespace: str = ''
+    domain: int | None = None
+    placing_s: float = 0.0
+
+    @property
+    def records(self) -> Path:
+        """Where the records are."""
+        return self.out / RECORDS
+
+
+class Bringup:
+    """A graph of processes, and a node here that watches it."""
+
+    def __init__(self, spec: BringupSpec) -> None:
+        """Prepare; nothing is started yet."""
+        self._domain = Domain(spec.domain)
+        self._environment = self._domain.environment(os.environ)
+        self._environment.setdefault('ROS_LOG_DIR', str(spec.out / 'log'))
+        self._spec = spec
+        self._names = [name for name in WAIT_FOR.default if isinstance(name, str)]
+        if spec.bag is not None:
+            self._names.append('bag_recorder')
+        self._others = [self._process(name) for name in self._names]
+        self._orchestrator = self._process('trial_orchestrator')
+        self.watcher: Watcher | None = None
+
+    @property
+    def look_in(self) -> str:
+        """What to type in another terminal so that its ROS commands see this graph."""
+        names = sorted(self._domain.environment({}).keys() - {'AMENT_PREFIX_PATH'})
+        return ' '.join(['export', *(f'{name}={self._environment[name]}' for name in names)])
+
+    @property
+    def restarts(self) -> dict[str, int]:
+        """How often each node was started again."""
+        return {process.name: process.restarts for process in self._processes}
+
+    @property
+    def _processes(self) -> list[NodeProcess]:
+        return [*self._others, self._orchestrator]
+
+    def _process(self, name: str) -> NodeProcess:
+        arguments = []
+        if self._spec.namespace:
+            arguments += ['-r', f'__ns:=/{self._spec.namespace.strip("/")}']
+        parameters: dict[str, object] = {}
+        if name == 'world':
+            parameters = {
+                'journal_dir': self._spec.out / 'journal',
+                'placing_s': float(self._spec.placing_s),
+            }
+        if name == 'bag_recorder':
+            parameters = {'bag_dir': self._spec.bag}
+        if name == 'trial_orchestrator':
+            parameters = {
+                'script': self._spec.script,
+                'out_dir': self._spec.out,
+                'wait_for': f'[{", ".join([*self._names, WATCHER.name])}]',
+            }
+        for key, value in parameters.items():
+            arguments += ['-p', f'{key}:={value}']
+        return NodeProcess(name, arguments, self._environment)
+
+    def run(self, on_tick: Callable[[Scene | None], None]) -> int:
+        """Run the script to its end; always take everything down again.
+
+        Args:
+            on_tick: called some times a second with what there is to see.
+
+        Returns:
+            The exit code of the orchestrator: 0 if every tower was rebuilt, 1 if not.
+
+        Raises:
+            BlocksPlanningError: if a node could not be kept alive, or refused its parameters.
+            KeyboardInterrupt: on SIGINT or SIGTERM.
+        """
+        # An exception in the middle of a conversion in C would come out as another one.
+        interrupted = threading.Event()
+        before = {
+            number: signal.signal(number, lambda *_: interrupted.set())
+            for number in (signal.SIGINT, signal.SIGTERM)
+        }
+        os.environ.update(self._environment)
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+        executor = SingleThreadedExecutor()
+        try:
+            for process in self._processes:
+                process.start()
+            self.watcher = Watcher(namespace=self._spec.namespace)
+            executor.add_node(self.watcher)
+            while True:
+                executor.spin_once(timeout_sec=_SPIN_S)
+                if interrupted.is_set():
+                    raise KeyboardInterrupt
+                on_tick(self.watcher.scene)
+                code = self._orchestrator.exit_code()
+                if code in (0, 1):
+                    return code
+                self._keep_alive()
+        finally:
+            stop_all(self._processes)
+            executor.shutdown(timeout_sec=_SPIN_S)
+            rclpy.utilities.try_shutdown()
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    def _keep_alive(self) -> None:
+        for process in self._processes:
+            if process.exit_code() == BAD_INPUT:
+                raise BlocksPlanningError(
+                    f'{process.name} refused to start: see its message above'
+                )
+            if not process.keep_alive():
+                raise BlocksPlanningError(
+                    f'{process.name} died {process.restarts + 1} times, the last time with '
+                    f'exit code {process.exit_code()}'
+                )

@@ -1,0 +1,100 @@
+"""Cells, blocks and placements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import lru_cache
+
+from blocks_planning_msgs import msg as ros
+
+from blocks_planning.board import rules
+from blocks_planning.board.blocks import Block, Placed
+from blocks_planning.board.geometry import MAX_SIDE, Board, Mask
+from blocks_planning.ros.conversions.fields import refuse
+
+
+def grid_to_ros(board: Board, mask: Mask) -> ros.Grid:
+    """A mask as cells, row by row from the ground."""
+    return ros.Grid(width=board.width, height=board.height, cells=_cells_of(board, mask))
+
+
+@lru_cache(maxsize=4096)  # the same regions are spoken of again and again
+def _cells_of(board: Board, mask: Mask) -> bytes:
+    cells = bytearray(board.size)
+    for column, row in board.cells(mask):
+        cells[row * board.width + column] = 1
+    return bytes(cells)
+
+
+def grid_from_ros(grid: ros.Grid, field: str) -> tuple[Board, Mask]:
+    """The board of a grid, and its mask."""
+    for name in ('width', 'height'):
+        side = getattr(grid, name)
+        if not 1 <= side <= MAX_SIDE:
+            raise refuse(f'{field}.{name}', side, f'1 to {MAX_SIDE} cells')
+    board = Board(grid.width, grid.height)
+    cells = bytes(grid.cells)
+    if len(cells) != board.size:
+        raise refuse(f'{field}.cells', len(cells), f'{board.size} cells')
+    if cells.translate(None, b'\x00\x01'):
+        raise refuse(f'{field}.cells', max(cells), '0 or 1 in each cell')
+    return board, _mask_of(board, cells)
+
+
+@lru_cache(maxsize=4096)
+def _mask_of(board: Board, cells: bytes) -> Mask:
+    places = (place for place, filled in enumerate(cells) if filled)
+    return board.mask((place % board.width, place // board.width) for place in places)
+
+
+def mask_on(board: Board, grid: ros.Grid, field: str) -> Mask:
+    """The mask of a grid that must be of a board."""
+    other, mask = grid_from_ros(grid, field)
+    if other != board:
+        raise refuse(
+            field, f'{other.width} x {other.height}', f'{board.width} x {board.height} cells'
+        )
+    return mask
+
+
+def placed_to_ros(placed: Placed) -> ros.Placement:
+    """A block where it lies."""
+    return ros.Placement(
+        block=ros.Block(width=placed.width, height=placed.height),
+        column=placed.column,
+        row=placed.row,
+    )
+
+
+def block_from_ros(block: ros.Block, field: str) -> Block:
+    """A block of a library."""
+    for name in ('width', 'height'):
+        side = getattr(block, name)
+        if not 1 <= side <= MAX_SIDE:
+            raise refuse(f'{field}.{name}', side, f'1 to {MAX_SIDE} cells')
+    return Block(block.width, block.height)
+
+
+def placed_from_ros(board: Board, message: ros.Placement, field: str) -> Placed:
+    """A block that lies on the board; whether it can get there is not looked at."""
+    block = block_from_ros(message.block, f'{field}.block')
+    if message.column + block.width > board.width or message.row + block.height > board.height:
+        place = f'column {message.column}, row {message.row}'
+        raise refuse(field, place, f'a place on the board for a block of {block}')
+    return Placed(*block, message.column, message.row)
+
+
+def way_from_ros(
+    board: Board, built: Mask, messages: Iterable[ros.Placement], field: str
+) -> tuple[tuple[Placed, ...], Mask]:
+    """Placements that can be carried out one after the other, and the state they lead to."""
+    placements = []
+    for index, message in enumerate(messages):
+        placed = placed_from_ros(board, message, f'{field}[{index}]')
+        rest = rules.drop(board, built, placed.placement)
+        if rest != placed:
+            expected = 'a possible placement' if rest is None else f'row {rest.row}'
+            raise refuse(f'{field}[{index}].row', placed.row, expected)
+        placements.append(placed)
+        built |= rules.cells_of(board, placed)
+    return tuple(placements), built

@@ -1,0 +1,48 @@
+"""What ``ros2 run`` starts: one function per node.
+
+Importing a node takes a while (rclpy, numba), and a signal during that would end in a traceback.
+So this module imports next to nothing, and until a node has handlers of its own a signal just
+ends the process: there is nothing to take down yet.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from importlib import import_module
+
+
+def _start(name: str) -> None:
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: os._exit(0))
+    import_module(f'blocks_planning.ros.{name}').main()
+
+
+def world() -> None:
+    """The board."""
+    _start('world')
+
+
+def subgoal_selector() -> None:
+    """Which region comes next."""
+    _start('subgoal_selector')
+
+
+def action_searcher() -> None:
+    """How a region is filled."""
+    _start('action_searcher')
+
+
+def trial_orchestrator() -> None:
+    """Which trial runs."""
+    _start('trial_orchestrator')
+
+
+def bag_recorder() -> None:
+    """The bag."""
+    _start('bag_recorder')
+
+
+if __name__ == '__main__':
+    _start(sys.argv.pop(1))

@@ -1,0 +1,161 @@
+"""A part of a trial as a node: convert, let the part step, convert back."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any, Protocol
+
+from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
+from rclpy.node import Node
+
+from blocks_planning.board.geometry import Board
+from blocks_planning.errors import InvalidInput
+from blocks_planning.ros.graph import NodeTopics
+from blocks_planning.ros.inbox import Inbox
+from blocks_planning.ros.parameters import Parameter, declare
+from blocks_planning.ros.topics import TRIAL, Topic
+from blocks_planning.trials.messages import Message, Remind, TrialStarted
+
+REMIND_PERIOD = Parameter(
+    'remind_period_s',
+    1.0,
+    'After so long without news, say again what nobody has answered [s].',
+    (0.05, 3600.0),
+)
+WARN_PERIOD_S = 1.0
+ACKNOWLEDGE_S = 0.3
+
+
+class Part(Protocol):
+    """A module such as :mod:`blocks_planning.trials.world`."""
+
+    Memory: Any
+
+    def step(self, memory: Any, message: Message) -> tuple[Any, tuple[Message, ...]]:
+        """What the part does with a message."""
+        ...
+
+
+class PartNode(Node):
+    """A node that owns one part's memory.
+
+    A message that can't be is refused with a warning and counted; one of a trial that is not
+    known yet waits; everything else is for the part to judge.
+    """
+
+    def __init__(
+        self,
+        topics: NodeTopics,
+        part: Part,
+        parameters: tuple[Parameter, ...] = (),
+        **options: Any,
+    ) -> None:
+        """Subscribe to the node's topics and advertise what it says.
+
+        Raises:
+            ConfigurationError: for a parameter that is unknown or out of its range.
+        """
+        super().__init__(topics.name, **options)
+        self.values = declare(self, (REMIND_PERIOD, *parameters))
+        self.steady = Clock(clock_type=ClockType.STEADY_TIME)  # no jump of the other one matters
+        self.refused = 0
+        self.trial: TrialStarted | None = None
+        self._part = part
+        self.memory = part.Memory()
+        self._inbox = Inbox()
+        self._has_news = False
+        self._said = {topic.kind: topic for topic in topics.says}
+        events = PublisherEventCallbacks(matched=self._on_match)
+        self._outlets = {
+            topic.kind: self.create_publisher(
+                topic.ros_type, topic.name, topic.publisher_qos, event_callbacks=events
+            )
+            for topic in topics.says
+        }
+        for topic in topics.listens:
+            self.create_subscription(
+                topic.ros_type, topic.name, partial(self._receive, topic), topic.subscription_qos
+            )
+        self.create_timer(self.values['remind_period_s'], self._remind, clock=self.steady)
+
+    def take(self, message: Message) -> None:
+        """Let the part step, and say what it says."""
+        self._has_news = True
+        if isinstance(message, TrialStarted):
+            self.begin(message)
+        self.memory, said = self._part.step(self.memory, message)
+        for answer in said:
+            self.say(answer)
+        if isinstance(message, TrialStarted):
+            for topic, held in self._inbox.take(message.trial_id):
+                self._receive(topic, held)
+
+    def receive(self, message: Message) -> None:
+        """A message from the graph that is as it must be."""
+        self.take(message)
+
+    def begin(self, trial: TrialStarted) -> None:
+        """Take note of the trial that runs."""
+        self.trial = trial
+
+    @property
+    def board(self) -> Board:
+        """The board of the trial that runs; there must be one."""
+        if self.trial is None:
+            raise RuntimeError('no trial runs')
+        return self.trial.spec.task.board
+
+    def say(self, message: Message) -> None:
+        """Publish a message, or :meth:`perform` what no topic carries."""
+        topic = self._said.get(type(message))
+        if topic is None:
+            self.perform(message)
+        elif topic is TRIAL:
+            self.publish(topic, topic.to_ros(message))
+        else:
+            self.publish(topic, topic.to_ros(self.board, message))
+
+    def publish(self, topic: Topic, message: Any) -> None:
+        """Stamp and publish."""
+        message.header.stamp = self.get_clock().now().to_msg()
+        self._outlets[topic.kind].publish(message)
+
+    def wait_until_heard(self, topic: Topic) -> None:
+        """Wait, not long, until all listeners of a topic have got what was published."""
+        self._outlets[topic.kind].wait_for_all_acked(Duration(seconds=ACKNOWLEDGE_S))
+
+    def perform(self, message: Message) -> None:
+        """Do what the part wants done that is no message."""
+        raise NotImplementedError(f'{type(message).__name__} is not for {self.get_name()}')
+
+    def _receive(self, topic: Topic, message: Any) -> None:
+        try:
+            if topic is TRIAL:
+                converted = topic.from_ros(message)
+            elif self.trial is None or message.trial_id != self.trial.trial_id:
+                self._inbox.hold(message.trial_id, (topic, message))
+                return
+            elif topic.needs_board:
+                converted = topic.from_ros(self.board, message)
+            else:
+                converted = topic.from_ros(message)
+        except InvalidInput as error:
+            self.refused += 1
+            self.get_logger().warning(
+                f'refused a message on {topic.name}: {error}',
+                throttle_duration_sec=WARN_PERIOD_S,
+            )
+            return
+        self.receive(converted)
+
+    def _on_match(self, status: QoSPublisherMatchedInfo) -> None:
+        """A listener came: it may have missed what was asked before."""
+        if status.current_count_change > 0 and self.trial is not None:
+            self.take(Remind(self.trial.trial_id))
+
+    def _remind(self) -> None:
+        if self.trial is not None and not self._has_news:
+            self.take(Remind(self.trial.trial_id))
+        self._has_news = False

@@ -1,0 +1,127 @@
+"""Starting and ending a process with a node in it.
+
+rclpy's own signal handlers end one stop in ten with a traceback, and destroying a node can hang
+in the middleware with the GIL held. So signals only set an event here; the node spins in a
+thread; and a timer in C ends the process if taking the node down takes too long. A process leaves
+within a second, with exit code 0, also during a search; BLOCKS_PLANNING_EXIT_BOUND_S gives it
+more seconds.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+import signal
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+
+import rclpy
+import rclpy.utilities
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+from blocks_planning.errors import BlocksPlanningError
+from blocks_planning.ros.processes import PARENT_VARIABLE
+
+EXIT_BOUND_S = float(os.environ.get('BLOCKS_PLANNING_EXIT_BOUND_S', '0.9'))
+_SPIN_S = 0.1
+_DRAIN_STEP_S = 0.01
+_LOOK_FOR_PARENT_S = 0.5
+BAD_INPUT = 2
+CRASHED = 3
+
+
+def prepare_environment() -> None:
+    """Make ROS packages findable where nothing was sourced: in a virtual environment."""
+    os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)
+    if not os.environ.get('HOME'):
+        os.environ.setdefault('ROS_LOG_DIR', str(Path.cwd() / 'log'))
+
+
+def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = None) -> None:
+    """Make a node and spin it until SIGINT, SIGTERM, or its event is set; then exit.
+
+    Args:
+        make_node: gets the event that ends the process; setting it is how a node ends itself.
+        args: of the command line; None for those of the process.
+    """
+    prepare_environment()
+    stop = threading.Event()
+    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda received, _: _on_signal(stop, received))
+    try:
+        node = make_node(stop)
+    except BlocksPlanningError as error:
+        sys.stderr.write(f'Error: {error}\n')
+        sys.stderr.flush()
+        os._exit(BAD_INPUT)
+    failures: list[BaseException] = []
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    spinning = threading.Thread(
+        target=_spin,
+        args=(executor, stop, failures, getattr(node, 'drain_s', 0.0)),
+        name='spin',
+        daemon=True,
+    )
+    spinning.start()
+    _wait(stop)
+    _arm_exit()
+    spinning.join(EXIT_BOUND_S / 2)  # a callback that is still busy is not torn down under
+    if not spinning.is_alive():
+        finish = getattr(node, 'finish', None)
+        if finish is not None:
+            finish()
+        executor.shutdown(timeout_sec=_SPIN_S)
+        node.destroy_node()
+        rclpy.utilities.try_shutdown()
+    for failure in failures:
+        traceback.print_exception(failure)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(CRASHED if failures else getattr(node, 'exit_code', 0))
+
+
+def _wait(stop: threading.Event) -> None:
+    """Wait for the end; it also comes when the bring-up that started this process is gone."""
+    parent = os.environ.get(PARENT_VARIABLE)
+    while not stop.wait(_LOOK_FOR_PARENT_S):
+        if parent is not None and os.getppid() != int(parent):
+            stop.set()
+
+
+def _spin(
+    executor: SingleThreadedExecutor,
+    stop: threading.Event,
+    failures: list[BaseException],
+    drain_s: float,
+) -> None:
+    """Spin until the end, and then for ``drain_s`` over what has arrived already."""
+    try:
+        while not stop.is_set():
+            executor.spin_once(timeout_sec=_SPIN_S)
+        end = time.monotonic() + drain_s
+        while time.monotonic() < end:
+            executor.spin_once(timeout_sec=_DRAIN_STEP_S)
+    except BaseException as error:  # noqa: BLE001  said by the main thread, which ends the process
+        failures.append(error)
+        stop.set()
+
+
+def _on_signal(stop: threading.Event, received: int) -> None:
+    if stop.is_set():
+        os._exit(128 + received)
+    stop.set()
+    _arm_exit()
+
+
+def _arm_exit() -> None:
+    """End the process without fail: from a thread in C, which needs no GIL."""
+    nowhere = open(os.devnull, 'w')  # noqa: PTH123, SIM115  for as long as the process lives
+    faulthandler.dump_traceback_later(EXIT_BOUND_S, exit=True, file=nowhere)

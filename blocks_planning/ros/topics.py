@@ -1,0 +1,129 @@
+"""The topics of the graph: one table, from which nodes, the recorder and the tests work.
+
+| topic | says | QoS |
+|---|---|---|
+| `trial` | which trial runs | latched |
+| `state` | the board | latched |
+| `search/request`, `search/result` | what filling a region takes | stream |
+| `subgoal` | which region comes next, and all decisions so far | latched |
+| `plan` | the placements about to be carried out | latched |
+| `action`, `action/outcome` | a block to drop, and what became of it | stream |
+| `outcome` | how the trial ended; everybody stops working on it | latched |
+
+Names are relative: a namespace or a remap moves the whole graph.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from blocks_planning_msgs import msg as ros
+from rclpy.qos import QoSProfile
+
+from blocks_planning.ros import qos
+from blocks_planning.ros.conversions import board, decisions, search, trial
+from blocks_planning.trials import messages as core
+
+
+class Topic(NamedTuple):
+    """A topic, and how its messages are converted.
+
+    ``from_ros`` takes the board of the trial that runs, but on `trial` and `outcome`.
+    ``to_ros`` takes it too, but on `trial`; on `outcome` it takes a trial's id and its record.
+    """
+
+    name: str
+    ros_type: type[Any]
+    kind: type[Any]
+    to_ros: Callable[..., Any]
+    from_ros: Callable[..., Any]
+    latched: bool = False
+
+    @property
+    def needs_board(self) -> bool:
+        """Whether ``from_ros`` takes the board of the trial that runs."""
+        return self.kind not in (core.TrialStarted, core.TrialEnded)
+
+    @property
+    def publisher_qos(self) -> QoSProfile:
+        """For who says it."""
+        return qos.latched_state() if self.latched else qos.stream()
+
+    @property
+    def subscription_qos(self) -> QoSProfile:
+        """For who listens."""
+        return qos.every_latched_state() if self.latched else qos.stream()
+
+
+TRIAL = Topic(
+    'trial',
+    ros.TrialSpec,
+    core.TrialStarted,
+    trial.started_to_ros,
+    trial.started_from_ros,
+    latched=True,
+)
+STATE = Topic(
+    'state',
+    ros.WorldState,
+    core.WorldState,
+    board.state_to_ros,
+    board.state_from_ros,
+    latched=True,
+)
+SEARCH_REQUEST = Topic(
+    'search/request',
+    ros.SearchRequest,
+    core.SearchRequest,
+    search.request_to_ros,
+    search.request_from_ros,
+)
+SEARCH_RESULT = Topic(
+    'search/result',
+    ros.SearchResult,
+    core.SearchAnswer,
+    search.answer_to_ros,
+    search.answer_from_ros,
+)
+SUBGOAL = Topic(
+    'subgoal',
+    ros.Subgoal,
+    core.SubgoalChosen,
+    decisions.subgoal_to_ros,
+    decisions.subgoal_from_ros,
+    latched=True,
+)
+PLAN = Topic(
+    'plan', ros.Plan, core.PlanMade, search.plan_to_ros, search.plan_from_ros, latched=True
+)
+ACTION = Topic(
+    'action', ros.PlaceBlock, core.PlaceBlock, board.action_to_ros, board.action_from_ros
+)
+ACTION_OUTCOME = Topic(
+    'action/outcome',
+    ros.PlacementOutcome,
+    core.PlacementOutcome,
+    board.placement_outcome_to_ros,
+    board.placement_outcome_from_ros,
+)
+OUTCOME = Topic(
+    'outcome',
+    ros.TrialOutcome,
+    core.TrialEnded,
+    trial.outcome_to_ros,
+    trial.ended_from_ros,
+    latched=True,
+)
+
+TOPICS = (
+    TRIAL,
+    STATE,
+    SEARCH_REQUEST,
+    SEARCH_RESULT,
+    SUBGOAL,
+    PLAN,
+    ACTION,
+    ACTION_OUTCOME,
+    OUTCOME,
+)

@@ -1,0 +1,82 @@
+"""The record of a trial through the ROS graph is the record of the same trial in one process.
+
+``BLOCKS_PLANNING_PARITY=all`` (``make parity``) compares more trials, over all 16 towers.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+from graphs import local_lines, record_lines, run_graph, write_script
+
+_SMALL: list[dict[str, Any]] = [
+    {  # 10
+        'stimuli': ['cogsci2021/5', 'cogsci2021/9'],
+        'searches': [{'name': 'bfs', 'depth': 2}],
+        'strategies': [
+            {'name': 'none'},
+            {'name': 'scoping', 'lambda': [0.0, 0.01], 'commit': ['subgoal', 'action']},
+        ],
+        'first_seed': 3,
+        'seeds': 1,
+    },
+    {  # 14
+        'stimuli': ['cogsci2021/7'],
+        'searches': [
+            {'name': 'astar', 'iterations': 64, 'divisor': ['smallest', 'mean']},
+            {'name': 'best_first', 'iterations': 64, 'execute': ['first', 'path']},
+            {'name': 'random'},
+            {'name': 'exact'},
+            {'name': 'bfs', 'depth': 1},
+        ],
+        'strategies': [{'name': 'scoping', 'lambda': 0.001}, {'name': 'full', 'lambda': 0.1}],
+        'budget': 5000,
+        'first_seed': 2**64 - 1,
+        'seeds': 1,
+    },
+]
+_LARGE: list[dict[str, Any]] = [
+    *_SMALL,
+    {  # 128
+        'stimuli': ['cogsci2021'],
+        'searches': [{'name': 'bfs', 'depth': 3}],
+        'strategies': [
+            {'name': 'none'},
+            {'name': 'scoping', 'lambda': [0.0, 0.002, 0.03]},
+            {'name': 'full', 'lambda': [0.002, 1]},
+            {'name': 'scoping', 'lambda': [0.0, 0.002], 'commit': 'action'},
+        ],
+        'seeds': 1,
+    },
+    {  # 96
+        'stimuli': ['cogsci2021'],
+        'searches': [
+            {'name': 'astar', 'iterations': 256, 'execute': 'path', 'divisor': 'mean'},
+            {'name': 'random'},
+            {'name': 'exact'},
+        ],
+        'strategies': [{'name': 'scoping'}],
+        'first_seed': 11,
+        'seeds': 2,
+    },
+    {  # 20
+        'stimuli': ['cogsci2021/3', 'cogsci2021/12'],
+        'library': '1x1,3x1,1x3,2x2',
+        'searches': [{'name': 'bfs', 'depth': [1, 2]}, {'name': 'best_first'}],
+        'strategies': [{'name': 'none'}, {'name': 'scoping', 'lambda': 0.005}],
+        'budget': 20000,
+        'seeds': 2,
+    },
+]
+SCRIPTS = _LARGE if os.environ.get('BLOCKS_PLANNING_PARITY') == 'all' else _SMALL
+
+
+@pytest.mark.parametrize('script', SCRIPTS, ids=map(str, range(len(SCRIPTS))))
+def test_records_are_equal_byte_for_byte(script: dict[str, Any], tmp_path: Path) -> None:
+    path = write_script(tmp_path, **script)
+    done = run_graph(path, '--out', tmp_path / 'out')
+    assert done.returncode in (0, 1), done.stderr
+    assert record_lines(tmp_path / 'out') == local_lines(path)

@@ -1,0 +1,22 @@
+"""Nodes of a test are in a graph of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import pytest
+from peers import Graph
+
+
+@pytest.fixture
+def graph() -> Iterator[Graph]:
+    """An empty graph, taken down after the test."""
+    made = Graph()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def spin_until(graph: Graph) -> Callable[..., None]:
+    """Spin the nodes of the graph until a condition holds."""
+    return graph.spin_until

@@ -1,0 +1,55 @@
+"""The page about the graph says what the graph is."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from source_imports import ROOT
+
+from blocks_planning.ros.graph import GRAPH
+from blocks_planning.ros.topics import TOPICS, Topic
+
+PAGE = (ROOT / 'docs' / 'ros.md').read_text(encoding='utf-8')
+MESSAGES = sorted((ROOT / 'msg_defs' / 'msg').glob('*.msg'))
+
+
+def row(first: str) -> list[str]:
+    """The cells of the row of a table that begins with a name."""
+    (found,) = re.findall(rf'^\| `{re.escape(first)}` \| (.*) \|$', PAGE, re.MULTILINE)
+    return [cell.strip() for cell in found.split(' | ')]
+
+
+def names(cell: str) -> set[str]:
+    """The names in a cell."""
+    return set(re.findall(r'`([^`]+)`', cell))
+
+
+@pytest.mark.parametrize('topic', TOPICS, ids=lambda topic: topic.name)
+def test_topic_is_told_with_type_qos_and_nodes(topic: Topic) -> None:
+    kind, qos, source, listeners = row(topic.name)
+    assert names(kind) == {topic.ros_type.__name__}
+    assert qos == ('latched' if topic.latched else 'stream')
+    assert names(source) == {node.name for node in GRAPH.values() if topic in node.says}
+    assert names(listeners) == {node.name for node in GRAPH.values() if topic in node.listens}
+
+
+@pytest.mark.parametrize('path', MESSAGES, ids=lambda path: path.stem)
+def test_message_is_told_with_every_field_and_its_comment(path: Path) -> None:
+    section = PAGE.split(f'### {path.stem}\n')[1].split('\n##')[0]
+    told = re.findall(r'^\| `(\w+)` \| `([^`]+)` \| ?(.*) ?\|$', section, re.MULTILINE)
+    defined = [
+        (field, kind.removeprefix('std_msgs/'), comment)
+        for line in path.read_text(encoding='utf-8').splitlines()
+        if '=' not in line.partition('#')[0]
+        for kind, field, comment in re.findall(r'^([\w/\[\]]+) (\w+) *(?:# *(.*))?$', line)
+    ]
+    assert [(field, kind, comment.strip()) for field, kind, comment in told] == defined
+
+
+def test_action_is_told() -> None:
+    text = (ROOT / 'msg_defs' / 'action' / 'RunTrial.action').read_text(encoding='utf-8')
+    section = PAGE.split('### RunTrial')[1].split('\n##')[0]
+    for kind, field in re.findall(r'^(\w+) (\w+)', text, re.MULTILINE):
+        assert f'| `{field}` | `{kind}` |' in section

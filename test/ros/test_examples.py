@@ -1,0 +1,87 @@
+"""The examples of the documentation, in a whole graph."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import pytest
+from graphs import NODES, record_lines, write_script
+from source_imports import ROOT
+
+from blocks_planning.ros.domain import Domain
+from blocks_planning.trials.reading import read_records
+from blocks_planning.trials.status import TrialStatus
+from blocks_planning.trials.verify import contradictions
+
+EXAMPLES = {
+    'custom_searcher': ('action_searcher', 'my_searcher'),
+    'fake_robot': ('world', 'fake_robot'),
+}
+"""Each with the node that it stands in for, and its own name."""
+
+
+@contextmanager
+def process(
+    command: list[str], environment: dict[str, str], log: Path
+) -> Iterator[subprocess.Popen[bytes]]:
+    """A process that gets a SIGTERM in the end, and has a second to take it."""
+    with log.open('wb') as stderr:
+        running = subprocess.Popen(command, env=environment, stderr=stderr)
+    try:
+        yield running
+    finally:
+        running.send_signal(signal.SIGTERM)
+        try:
+            running.wait(5)
+        except subprocess.TimeoutExpired:
+            running.kill()
+            running.wait()
+    assert log.read_text() == ''
+    assert running.returncode == 0
+
+
+@pytest.mark.parametrize('examples', [*([name] for name in EXAMPLES), [*EXAMPLES]], ids='+'.join)
+def test_example_takes_the_place_of_a_node(examples: list[str], tmp_path: Path) -> None:
+    nodes = {name: name for name in ('world', 'subgoal_selector', 'action_searcher')}
+    commands = {name: ['-m', NODES, name] for name in nodes}
+    for example in examples:
+        replaced, nodes[replaced] = EXAMPLES[example][0], EXAMPLES[example][1]
+        commands[replaced] = [str(ROOT / 'docs' / 'examples' / f'{example}.py')]
+    script = write_script(
+        tmp_path,
+        stimuli=['cogsci2021/5', 'cogsci2021/9', 'cogsci2021/14'],
+        strategies=[{'name': 'scoping'}, {'name': 'full'}],
+    )
+    commands['trial_orchestrator'] = [
+        *('-m', NODES, 'trial_orchestrator', '--ros-args'),
+        *('-p', f'script:={script}', '-p', f'out_dir:={tmp_path}'),
+        *('-p', f'wait_for:=[{", ".join(nodes.values())}]'),
+    ]
+    domain = Domain()
+    environment = domain.environment(os.environ)
+    with ExitStack() as stack:
+        for name, command in commands.items():
+            running = stack.enter_context(
+                process([sys.executable, *command], environment, tmp_path / f'{name}.log')
+            )
+        assert running.wait(30) == 0
+    domain.release()
+    records = read_records(tmp_path / 'trials.jsonl')
+    assert len(records) == len(record_lines(tmp_path)) == 6
+    for record in records:
+        assert record.status is TrialStatus.SUCCESS
+        assert list(contradictions(record)) == []
+
+
+@pytest.mark.parametrize('example', EXAMPLES)
+def test_example_is_short_and_printed_in_the_documentation(example: str) -> None:
+    path = ROOT / 'docs' / 'examples' / f'{example}.py'
+    code = [line for line in path.read_text(encoding='utf-8').splitlines() if line.strip()]
+    assert len(code) <= 65
+    assert f'examples/{example}.py' in (ROOT / 'docs' / 'ros.md').read_text(encoding='utf-8')

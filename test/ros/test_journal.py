@@ -1,0 +1,85 @@
+"""The journal of the world, without a world."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from blocks_planning.board.blocks import Placed
+from blocks_planning.errors import RecordError
+from blocks_planning.ros.journal import Journal
+
+PLACEMENTS = [Placed(2, 1, 0, 0), Placed(1, 16, 15, 0), Placed(4, 2, 3, 14)]
+
+
+def journal_of(folder: Path, trial_id: str = 'a') -> Path:
+    """The file of a journal with all placements, as a world leaves it that was killed."""
+    journal = Journal(folder)
+    assert journal.begin(trial_id) == ([], '')
+    for placed in PLACEMENTS:
+        journal.append(placed)
+    (path,) = folder.glob('*.journal')
+    return path
+
+
+def test_what_was_written_is_there_again(tmp_path: Path) -> None:
+    journal_of(tmp_path)
+    assert Journal(tmp_path).begin('a') == (PLACEMENTS, '')
+
+
+def test_another_trial_begins_empty_and_costs_the_first_nothing(tmp_path: Path) -> None:
+    journal_of(tmp_path)
+    again = Journal(tmp_path)
+    assert again.begin('b') == ([], '')
+    assert again.begin('a') == (PLACEMENTS, '')
+
+
+@pytest.mark.parametrize('cut', range(1, 9))
+def test_a_torn_last_line_is_forgotten_and_the_rest_goes_on(tmp_path: Path, cut: int) -> None:
+    path = journal_of(tmp_path)
+    path.write_bytes(path.read_bytes()[:-cut])
+    again = Journal(tmp_path)
+    assert again.begin('a') == (PLACEMENTS[:-1], '')
+    again.append(PLACEMENTS[-1])
+    assert Journal(tmp_path).begin('a') == (PLACEMENTS, '')
+
+
+@pytest.mark.parametrize(
+    'content', [b'', b'\n', b'\x00\xff', b'something else\n1 1 0 0\n', b'{"trial": 1}\n']
+)
+def test_what_is_no_journal_is_set_aside(tmp_path: Path, content: bytes) -> None:
+    path = journal_of(tmp_path)
+    path.write_bytes(content)
+    placements, warning = Journal(tmp_path).begin('a')
+    assert placements == []
+    assert 'is not a journal; it was set aside as' in warning
+    (aside,) = tmp_path.glob('*.aside-*')
+    assert aside.read_bytes() == content
+
+
+def test_a_bad_line_in_the_middle_sets_the_file_aside(tmp_path: Path) -> None:
+    path = journal_of(tmp_path)
+    path.write_bytes(path.read_bytes().replace(b'1 16 15 0', b'1 16 x 0'))
+    placements, warning = Journal(tmp_path).begin('a')
+    assert (placements, bool(warning)) == ([], True)
+
+
+def test_no_trial_id_leads_out_of_the_folder(tmp_path: Path) -> None:
+    folder = tmp_path / 'journals'
+    journal_of(folder, '../../etc/' + 'x' * 300)
+    assert [path.name for path in tmp_path.iterdir()] == ['journals']
+
+
+def test_a_trial_that_is_over_needs_no_journal(tmp_path: Path) -> None:
+    journal = Journal(tmp_path)
+    journal.begin('a')
+    journal.append(PLACEMENTS[0])
+    journal.end()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
+    (tmp_path / 'file').write_text('')
+    with pytest.raises(RecordError, match='cannot be written'):
+        Journal(tmp_path / 'file' / 'journals')
