@@ -1,0 +1,71 @@
+"""The ``blocks-planning`` command.
+
+Results go to stdout, progress and errors to stderr. Exit codes: 0 done, 1 a planner did not
+succeed or a record does not hold, 2 bad input, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from blocks_planning import __version__
+from blocks_planning.cli.graph import run
+from blocks_planning.cli.inspecting import count, draw, exact, stimuli, verify
+from blocks_planning.cli.reproducing import exact_policy, growth, reproduce
+from blocks_planning.cli.running import solve, watch
+from blocks_planning.cli.sweeping import sweep
+from blocks_planning.errors import BlocksPlanningError
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+
+@click.group(
+    context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 99},
+    epilog='Where to begin: blocks-planning watch cogsci2021/9',
+)
+@click.version_option(__version__, prog_name='blocks-planning')
+def commands() -> None:
+    """Rebuild block towers from their silhouettes, one visual scope at a time.
+
+    A STIMULUS is a set of silhouettes that ships with the package (cogsci2021), one of a set
+    (cogsci2021/9), or the path of a text file with pictures drawn with '#' and '.'.
+    """
+
+
+for command in (
+    watch,
+    solve,
+    run,
+    exact,
+    exact_policy,
+    count,
+    stimuli,
+    verify,
+    draw,
+    sweep,
+    reproduce,
+    growth,
+):
+    commands.add_command(command)
+
+
+def main() -> None:
+    """Run the command and exit with its code; errors made by the user take one line."""
+    try:
+        code = commands.main(prog_name='blocks-planning', standalone_mode=False)
+    except BlocksPlanningError as error:
+        click.echo(f'Error: {error}', err=True)
+        code = BAD_INPUT
+    except click.ClickException as error:
+        error.show()
+        code = error.exit_code
+    except (KeyboardInterrupt, click.Abort):
+        click.echo('Interrupted.', err=True)
+        code = INTERRUPTED
+    except BrokenPipeError:  # the reader of our output has seen enough
+        sys.stderr.close()
+        code = 0
+    sys.exit(code)

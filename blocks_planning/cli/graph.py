@@ -1,0 +1,153 @@
+"""The command that brings up the ROS graph."""
+
+from __future__ import annotations
+
+import signal
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from blocks_planning.cli.options import refuse_nan
+from blocks_planning.errors import BlocksPlanningError
+from blocks_planning.trials.reading import RecordTail, read_records
+from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.recordfile import RecordFile
+from blocks_planning.trials.script import read_script
+from blocks_planning.trials.status import TrialStatus
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.live import Live
+
+    from blocks_planning.view.scene import Scene
+
+_EXAMPLES = """\b
+Examples:
+  blocks-planning run config/trials/demo.yaml
+  blocks-planning run my_trials.yaml --out results --bag results/bag
+"""
+_PATH = click.Path(path_type=Path)
+_FRAMES_PER_S = 8
+
+
+@click.command(epilog=_EXAMPLES)
+@click.argument('script', type=_PATH)
+@click.option('--out', default='trials', show_default=True, type=_PATH, help='Folder of records.')
+@click.option('--bag', type=_PATH, help='Folder of a bag to record everything in; must not exist.')
+@click.option('--namespace', default='', help='Of all nodes.')
+@click.option('--domain', type=int, help='ROS domain, 0 to 100.  [default: a free one]')
+@click.option(
+    '--pace',
+    type=click.FloatRange(0, 60),
+    default=0.0,
+    callback=refuse_nan,
+    help='Seconds that placing a block takes, to watch it.  [default: 0]',
+)
+def run(
+    script: Path, out: Path, bag: Path | None, namespace: str, domain: int | None, pace: float
+) -> int:
+    """Bring up the ROS graph and run the trials of a script through it.
+
+    Records go to trials.jsonl in the folder --out; trials whose records are there already are not
+    run again. The exit code is 1 if a tower was not rebuilt perfectly.
+    """
+    specs = read_script(script)
+    try:
+        from blocks_planning.ros.bringup import Bringup, BringupSpec
+    except ImportError as error:
+        raise BlocksPlanningError(f'ROS 2 is not installed here: {error}') from None
+    spec = BringupSpec(script, out, bag, namespace, domain, pace)
+    records = RecordFile(spec.records)
+    wanted = {trial.trial_id for trial in specs}
+    done = len(wanted & records.finished)
+    records.close()
+    progress = _Progress(RecordTail(spec.records), len(specs), done)
+    bringup = Bringup(spec)
+    click.echo(f'To look into the graph: {bringup.look_in}', err=True)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    successes = 0
+    try:
+        with progress:
+            bringup.run(progress.on_tick)
+            progress.on_tick(None)
+    finally:
+        successes = _summarise(spec.records, wanted)
+    return int(successes < len(specs))
+
+
+def _summarise(path: Path, wanted: set[str]) -> int:
+    """Print what came of the wanted trials; return how many towers were rebuilt."""
+    from blocks_planning.view.tables import print_summaries
+
+    records = read_records(path) if path.stat().st_size else []
+    records = [record for record in records if record.spec.trial_id in wanted]
+    if records:
+        print_summaries(records)
+        click.echo(f'Records: {path}')
+    return sum(record.status is TrialStatus.SUCCESS for record in records)
+
+
+class _Progress:
+    """What is shown on stderr while trials run: the tower in a terminal, else a line per trial."""
+
+    def __init__(self, tail: RecordTail, total: int, done: int) -> None:
+        from rich.console import Console
+
+        self._console: Console = Console(stderr=True)
+        self._tail = tail
+        self._total = total
+        self._first = self._done = done
+        self._began: float | None = None
+        self._drawn = 0.0
+        self._live: Live | None = None
+
+    def __enter__(self) -> None:
+        from rich.live import Live
+
+        if self._console.is_interactive and self._console.file.isatty():
+            self._live = Live(console=self._console, auto_refresh=False, transient=True)
+            self._live.start()
+
+    def __exit__(self, *_: object) -> None:
+        if self._live is not None:
+            self._live.stop()
+
+    def on_tick(self, scene: Scene | None) -> None:
+        """Time to look for news, and to draw if enough has passed since the last picture."""
+        now = time.monotonic()
+        if scene is not None and self._began is None:
+            self._began = now
+        for record in self._tail.read():
+            self._done += 1
+            if self._live is None:
+                self._print(record)
+        if self._live is None or now - self._drawn < 1 / _FRAMES_PER_S:
+            return
+        from rich.console import Group
+
+        from blocks_planning.view.terminal import ROOM, frame, signs_for
+
+        self._drawn = now
+        size = self._console.size
+        trial = min(self._done + 1, self._total)
+        heading = self._heading(trial) if scene is not None else 'waiting for the nodes'
+        pictures = [heading]
+        if scene is not None:
+            room = max(size.height - ROOM - 1, 1)
+            pictures.append(frame(scene, size.width, room, signs_for(self._console)))  # type: ignore[arg-type]
+        self._live.update(Group(*pictures), refresh=True)
+
+    def _print(self, record: TrialRecord) -> None:
+        from blocks_planning.view.captions import outcome_of
+        from blocks_planning.view.scene import last_scene
+        from blocks_planning.view.terminal import signs_for
+
+        outcome = outcome_of(last_scene(record), signs_for(self._console))
+        click.echo(f'{self._heading(self._done)}: {outcome}', err=True)
+
+    def _heading(self, trial: int) -> str:
+        elapsed = time.monotonic() - (self._began or time.monotonic())
+        rate = (self._done - self._first) / elapsed if elapsed > 0 else 0.0
+        return f'trial {trial} of {self._total}, {rate:.1f} per second'

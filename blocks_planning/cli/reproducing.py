@@ -1,0 +1,162 @@
+"""Commands that run whole studies: the paper's, and how costs grow with the board."""
+
+from __future__ import annotations
+
+import json
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+
+import click
+
+from blocks_planning.cli.interrupt import interruptible
+from blocks_planning.cli.options import (
+    find_all,
+    json_option,
+    library_option,
+    stimuli_argument,
+    task_of,
+)
+from blocks_planning.cli.sweeping import out_option, print_summary, progress, workers_option
+from blocks_planning.search.result import DEFAULT_BUDGET
+
+
+@click.command(epilog='\b\nExample:\n  blocks-planning reproduce --out results')
+@out_option
+@click.option('--quick', is_flag=True, help='Few seeds and values of lambda: a look in seconds.')
+@workers_option
+def reproduce(out: Path, quick: bool, workers: int | None) -> int:
+    """Run every experiment of the paper and write report.html and results.json.
+
+    Figures and tables of all trials are beside them. Interrupted and started again it goes on
+    where it stopped. The exit code is 1 if a trial could not be run.
+    """
+    from blocks_planning.analysis.report import VERDICTS, write_report
+    from blocks_planning.experiments.exactly import exact_table
+    from blocks_planning.experiments.reading import find_sweep, read_sweep
+    from blocks_planning.experiments.running import default_workers
+    from blocks_planning.experiments.sweeping import run_sweep
+
+    wanted = read_sweep(find_sweep('paper_quick' if quick else 'paper'))
+    workers = workers or default_workers()
+    start = perf_counter()
+    with progress('Trials') as report:
+        summary = run_sweep(wanted, out / 'sweep', workers, report=report)
+    swept = perf_counter()
+    exact = exact_table(wanted, workers)
+    known = perf_counter()
+    notes = [_QUICK] if quick else []
+    results = write_report(out / 'sweep', out, exact, notes)
+    end = perf_counter()
+    print_summary(summary, out / 'sweep')
+    for preset, found in results['presets'].items():
+        verdicts = [claim['verdict'] for claim in found['claims']]
+        counted = ', '.join(f'{verdicts.count(verdict)} {verdict}' for verdict in VERDICTS)
+        click.echo(f'{preset}: {len(verdicts)} claims: {counted}')
+    click.echo(
+        f'{out / "report.html"}: written in {end - start:.1f} s (trials {swept - start:.1f} s, '
+        f'exact values {known - swept:.1f} s, statistics and figures {end - known:.1f} s)'
+    )
+    return int(summary.failed > 0)
+
+
+_QUICK = (
+    'This is a quick run: few seeds, few values of lambda. Its numbers show that everything works, '
+    'and say little about the paper.'
+)
+
+
+@click.command(epilog='\b\nExample:\n  blocks-planning growth --out growth')
+@out_option
+@click.option('--towers', type=click.IntRange(1), default=8, show_default=True, help='Per size.')
+@click.option('--seeds', type=click.IntRange(1), default=2, show_default=True, help='Per tower.')
+@click.option(
+    '--largest', type=click.IntRange(6, 16), default=16, show_default=True, help='Side [cells].'
+)
+@workers_option
+def growth(out: Path, towers: int, seeds: int, largest: int, workers: int | None) -> int:
+    """Measure how the states evaluated grow with the board, on generated towers.
+
+    Writes growth.json with fits, figures/growth.svg and .png, and the tables of all trials.
+    """
+    from blocks_planning.analysis.growth import growth_figure, growth_table, read_growth
+    from blocks_planning.analysis.style import save_figure
+    from blocks_planning.experiments.growth import SIDES, growth_sweep
+    from blocks_planning.experiments.running import default_workers
+    from blocks_planning.experiments.sweeping import run_sweep
+
+    sides = tuple(side for side in SIDES if side <= largest)
+    with progress('Trials') as report:
+        summary = run_sweep(
+            growth_sweep(towers, seeds, sides),
+            out / 'sweep',
+            workers or default_workers(),
+            report=report,
+        )
+    rows = growth_table(read_growth(out / 'sweep'))
+    (out / 'growth.json').write_text(json.dumps(rows, indent=1) + '\n', encoding='utf-8')
+    path = save_figure(growth_figure(rows, DEFAULT_BUDGET), out / 'figures', 'growth')
+    print_summary(summary, out / 'sweep')
+    for row in rows:
+        fit = row['fit']
+        click.echo(
+            f'{row["way"]:6} {row["strategy"]:8} {fit["law"]:11} {fit["base"]:6.2f} '
+            f'(R2 {fit["r2"]:.2f})'
+        )
+    click.echo(f'{path}: written')
+    return int(summary.failed > 0)
+
+
+@click.command(
+    epilog='\b\nExamples:\n  blocks-planning exact-policy cogsci2021/9\n'
+    '  blocks-planning exact-policy cogsci2021 --search random --json'
+)
+@stimuli_argument
+@click.option('--search', type=click.Choice(['bfs', 'random']), default='bfs', show_default=True)
+@click.option('--depth', type=click.IntRange(1, 64), help='Placements that bfs looks ahead (3).')
+@click.option('--budget', type=int, default=DEFAULT_BUDGET, show_default=True, help='b [states].')
+@click.option(
+    '--limit',
+    type=click.IntRange(1),
+    default=2_000_000,
+    show_default=True,
+    help='Most states to look at.',
+)
+@library_option
+@json_option
+def exact_policy(
+    addresses: tuple[str, ...],
+    search: str,
+    depth: int | None,
+    budget: int,
+    limit: int,
+    library: str,
+    as_json: bool,
+) -> None:
+    """Compute what bfs or random achieves on a tower, without sampling.
+
+    Success and expected cost of one attempt, and success of attempt after attempt within the
+    budget.
+    """
+    from blocks_planning.search.policy import analyse_policy
+    from blocks_planning.search.result import Problem
+    from blocks_planning.search.searches import make_search
+
+    chosen = make_search(search, {} if depth is None else {'depth': depth})
+    for stimulus in find_all(addresses):
+        task = task_of(stimulus, library)
+        problem = Problem(task, 0, task.silhouette)
+        work = partial(analyse_policy, problem, chosen, budget, limit)
+        found, interrupted = interruptible(work)
+        if interrupted or found is None:
+            raise KeyboardInterrupt
+        if as_json:
+            click.echo(json.dumps({'stimulus': stimulus.name, **vars(found)}))
+            continue
+        cost = found.cost_of_success
+        click.echo(
+            f'{stimulus.name}: one attempt succeeds with probability {found.success:.6g} at '
+            f'{found.cost:,.1f} states'
+            + ('' if cost is None else f' ({cost:,.1f} if it succeeds)')
+            + f'; solve within {budget:,}: {found.within_budget:.6g}'
+        )

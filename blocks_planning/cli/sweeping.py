@@ -1,0 +1,95 @@
+"""The command that runs sweeps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from blocks_planning.experiments.sweeping import Summary
+
+_PATH = click.Path(path_type=Path, exists=False)
+_SHOWN_FAILURES = 5
+
+out_option = click.option(
+    '--out', required=True, type=_PATH, help='The folder that results are written to.'
+)
+workers_option = click.option(
+    '--workers', type=click.IntRange(1), help='Processes of this machine (one per processor).'
+)
+
+
+@click.command(
+    epilog='\b\nExamples:\n  blocks-planning sweep paper --out results\n'
+    '  blocks-planning sweep my/sweep.yaml --out results --dask tcp://192.168.0.1:8786'
+)
+@click.argument('spec', metavar='SPEC.yaml')
+@out_option
+@workers_option
+@click.option('--dask', metavar='ADDRESS', help='Use the workers of this Dask scheduler instead.')
+def sweep(spec: str, out: Path, workers: int | None, dask: str | None) -> int:
+    """Run all trials of a specification and write tables of them as Parquet files.
+
+    Interrupted and started again it goes on where it stopped. The exit code is 1 if a trial
+    could not be run; its row in the table of trials says why.
+    """
+    from blocks_planning.experiments.reading import find_sweep, read_sweep
+    from blocks_planning.experiments.running import default_workers
+    from blocks_planning.experiments.sweeping import run_sweep
+
+    wanted = read_sweep(find_sweep(spec))
+    with progress('Trials') as report:
+        summary = run_sweep(wanted, out, workers or default_workers(), dask, report)
+    print_summary(summary, out)
+    return int(summary.failed > 0)
+
+
+@contextmanager
+def progress(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar on stderr with rate and time left, if somebody looks there; yields its setter."""
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda _done, _total: None
+        return
+    columns = (
+        TextColumn('{task.description}'),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn('{task.fields[rate]}'),
+        TimeElapsedColumn(),
+        TextColumn('left'),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task(what, total=None, rate='')
+
+        def report(done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total)
+            speed = bar.tasks[0].speed
+            bar.update(task, rate=f'{speed:,.0f}/s' if speed else '')
+
+        yield report
+
+
+def print_summary(summary: Summary, out: Path) -> None:
+    """Say how a sweep ended: to stdout, and to stderr what failed."""
+    listed = ', '.join(f'{count} {status}' for status, count in sorted(summary.statuses.items()))
+    click.echo(f'{out}: {summary.trials} trials: {listed}')
+    for error, count in list(summary.failures.items())[:_SHOWN_FAILURES]:
+        click.echo(f'failed, {count} trials: {error}', err=True)
+    if len(summary.failures) > _SHOWN_FAILURES:
+        click.echo(f'... and {len(summary.failures) - _SHOWN_FAILURES} more reasons', err=True)
