@@ -1,0 +1,102 @@
+"""Action-level search: states evaluated per second, against the readable twins in one run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from oracles import search as oracle
+from oracles.randomness import attempt_generator
+
+from benchmarks.measure import Figure, best_rate, seconds
+from blocks_planning.board.kernels.compiling import kernel
+from blocks_planning.board.kernels.masks import load, pack
+from blocks_planning.board.stimuli import find_stimuli
+from blocks_planning.board.task import Task
+from blocks_planning.search.compiled import tables_of
+from blocks_planning.search.exact import analyse
+from blocks_planning.search.kernels import breadth_first
+from blocks_planning.search.result import Problem
+from blocks_planning.search.searches import AStar
+from blocks_planning.search.solve import solve
+
+TASKS = [Task(s.board, s.silhouette) for s in find_stimuli('cogsci2021')]
+TWIN_TOWERS = (5, 6)  # those with the smallest trees: the twin takes its time
+DEPTH = 4
+
+
+@kernel
+def _decide(search, tables, state, generator, cancel):  # type: ignore[no-untyped-def]
+    root = load(state, 0)  # type: ignore[no-untyped-call]
+    evaluated, _, _ = breadth_first.decide(search, tables, root, 0, generator, cancel)
+    return evaluated
+
+
+def _bfs_decisions(tasks: list[Task]) -> int:
+    states = 0
+    for task in tasks:
+        tables = tables_of(task, task.silhouette)
+        search = breadth_first.make_search(tables, DEPTH)
+        empty, generator = pack([0], tables.cells), np.zeros(1, np.uint64)
+        states += _decide(search, tables, empty, generator, np.zeros(1, np.uint8))
+    return states
+
+
+def _twin(task: Task) -> oracle.Task:
+    board = task.board
+    library = tuple((block.width, block.height) for block in task.library)
+    return oracle.Task(board.width, board.height, library, frozenset(board.cells(task.silhouette)))
+
+
+def _twin_bfs_decisions(tasks: list[Task]) -> int:
+    states = 0
+    for task in tasks:
+        generator = attempt_generator(0, frozenset(), _twin(task).region, task.board.height, 0)
+        states += oracle.bfs_choice(_twin(task), frozenset(), generator, depth=DEPTH).cost
+    return states
+
+
+def _astar(iterations: int, seeds: int) -> int:
+    search = AStar(iterations, 'mean', 'path')
+    problems = [Problem(task, 0, task.silhouette) for task in TASKS]
+    return sum(
+        solve(problem, search, seed, budget=0).planning_cost
+        for problem in problems
+        for seed in range(seeds)
+    )
+
+
+def _twin_astar(iterations: int) -> int:
+    states = 0
+    for task in (TASKS[number - 1] for number in TWIN_TOWERS):
+        generator = attempt_generator(0, frozenset(), _twin(task).region, task.board.height, 0)
+        states += oracle.astar_choice(
+            _twin(task),
+            frozenset(),
+            generator,
+            iterations=iterations,
+            divisor='mean',
+            execute='path',
+        ).cost
+    return states
+
+
+def run(quick: bool) -> Iterator[Figure]:
+    """Rates on one core."""
+    few = [TASKS[number - 1] for number in TWIN_TOWERS]
+    rate = best_rate(lambda: _bfs_decisions(TASKS), 3 if quick else 20)
+    same = best_rate(lambda: _bfs_decisions(few), 20)
+    twin_rate = best_rate(lambda: _twin_bfs_decisions(few), 1)
+    yield Figure('bfs decisions, depth 4, 16 towers', rate / 1e6, 'million states/s', '>= 200')
+    yield Figure('the same, towers 5 and 6', same / 1e6, 'million states/s')
+    yield Figure('readable twin, towers 5 and 6', twin_rate, 'states/s')
+    yield Figure('ratio on the same towers', same / twin_rate, 'x', '>= 20,000')
+    astar = best_rate(lambda: _astar(4096, 1 if quick else 4), 3)
+    yield Figure('astar 4096, mean, path, 16 towers', astar / 1e6, 'million states/s', '>= 5')
+    large = best_rate(lambda: _astar(65_536, 1), 1 if quick else 2)
+    yield Figure('astar 65 536, mean, path, 16 towers', large / 1e6, 'million states/s', '>= 5')
+    twin_astar = best_rate(lambda: _twin_astar(512), 1)
+    yield Figure('astar, ratio to the readable twin (512 iterations)', astar / twin_astar, 'x')
+    analyse(TASKS[0])
+    exact = seconds(lambda: [analyse(task) for task in TASKS])
+    yield Figure('exact, 16 towers with all row prefixes', exact, 's', '< 0.2')

@@ -1,0 +1,71 @@
+"""A searcher of one's own in place of ``action_searcher``: depth first, large blocks first."""
+
+import rclpy.node
+from blocks_planning_msgs import msg
+
+from blocks_planning.ros import qos, runtime
+
+
+class MySearcher(rclpy.node.Node):
+    """Fills regions, and sends the placements of the subgoal that was chosen."""
+
+    def __init__(self):
+        super().__init__('my_searcher')
+        self.trial, self.state, self.subgoal = msg.TrialSpec(), None, None
+        self.result = self.create_publisher(msg.SearchResult, 'search/result', qos.stream())
+        self.action = self.create_publisher(msg.PlaceBlock, 'action', qos.stream())
+        for kind, topic, callback in (
+            (msg.TrialSpec, 'trial', lambda m: setattr(self, 'trial', m)),
+            (msg.WorldState, 'state', lambda m: self.act(m, self.subgoal)),
+            (msg.Subgoal, 'subgoal', lambda m: self.act(self.state, m)),
+        ):
+            self.create_subscription(kind, topic, callback, qos.every_latched_state())
+        self.create_subscription(msg.SearchRequest, 'search/request', self.search, qos.stream())
+
+    def search(self, asked):
+        """Answer what filling a region takes; cells are (row, column) here."""
+        self.seen, width = set(), asked.region.width
+        built, region = (
+            {divmod(index, width) for index, cell in enumerate(grid.cells) if cell}
+            for grid in (asked.built, asked.region)
+        )
+        plan = self.fill(frozenset(built), region)
+        answer = msg.SearchResult(trial_id=asked.trial_id, built=asked.built, region=asked.region)
+        answer.status = 'unsolvable_proven' if plan is None else 'solved'
+        answer.placements, answer.attempts = plan or [], 1
+        answer.planning_cost = len(self.seen)
+        answer.solution_cost = 0 if plan is None else answer.planning_cost
+        self.result.publish(answer)
+
+    def fill(self, built, region):
+        """Return placements that fill a region, or None."""
+        if built == region or built in self.seen:
+            return [] if built == region else None
+        self.seen.add(built)
+        row, left = min(region - built)  # the lowest empty cell: nothing may cover it later
+        for block in sorted(self.trial.library, key=lambda block: -block.width * block.height):
+            cells = {(row + y, left + x) for y in range(block.height) for x in range(block.width)}
+            rests = row == 0 or any((row - 1, c) in built for _, c in cells)
+            if rests and cells <= region - built:
+                rest = self.fill(built | cells, region)
+                if rest is not None:
+                    return [msg.Placement(block=block, column=left, row=row), *rest]
+        return None
+
+    def act(self, state, subgoal):
+        """Send the placement that the state calls for."""
+        self.state, self.subgoal = state, subgoal
+        trials = {getattr(said, 'trial_id', None) for said in (state, subgoal, self.trial)}
+        if len(trials) > 1 or not subgoal.decisions[-1].subgoals:
+            return
+        chosen = subgoal.decisions[-1].subgoals[subgoal.decisions[-1].executed - 1]
+        done = state.sequence - subgoal.sequence
+        if 0 <= done < chosen.execute:
+            block, column = chosen.placements[done].block, chosen.placements[done].column
+            action = msg.PlaceBlock(trial_id=state.trial_id, sequence=state.sequence)
+            action.block, action.column = block, column
+            self.action.publish(action)
+
+
+if __name__ == '__main__':
+    runtime.run(lambda _: MySearcher())

@@ -1,0 +1,63 @@
+"""What the documentation tells a reader to type works, in the order in which it says so."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from source_imports import ROOT
+
+
+class Listing(NamedTuple):
+    """A listing of a document: what kind it is, which file it is, and its text."""
+
+    kind: str
+    file: str | None
+    text: str
+
+
+def listings(path: Path) -> list[Listing]:
+    found = re.findall(r'^```(\w+)(?: file=(\S+))?\n(.*?)^```$', path.read_text(), re.M | re.S)
+    return [Listing(kind, file or None, text) for kind, file, text in found]
+
+
+def run(command: list[str], folder: Path) -> str:
+    environment = os.environ | {'PYTHONPATH': str(ROOT)}
+    done = subprocess.run(
+        [sys.executable, *command], cwd=folder, env=environment, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_own_towers_can_be_followed(tmp_path: Path) -> None:
+    program = []
+    for listing in listings(ROOT / 'docs' / 'own_towers.md'):
+        if listing.file:
+            (tmp_path / listing.file).write_text(listing.text)
+        elif listing.kind == 'bash':
+            for line in listing.text.splitlines():
+                name, *words = shlex.split(line)
+                assert name == 'blocks-planning'
+                run(['-m', 'blocks_planning.cli', *words], tmp_path)
+        else:
+            assert listing.kind == 'python'
+            program.append(listing.text)
+    assert len(program) == 5
+    said = run(['-c', '\n'.join(program)], tmp_path)
+    assert re.search(r'success \d\.\d\d \[\d', said)
+    assert 'stairs' in said
+
+
+@pytest.mark.parametrize('path', sorted((ROOT / 'docs').glob('*.md')), ids=lambda path: path.name)
+def test_commands_of_documents_exist(path: Path) -> None:
+    from blocks_planning.cli import commands
+
+    named = set(re.findall(r'blocks-planning ([a-z][a-z-]*)', path.read_text()))
+    assert named <= set(commands.commands)
