@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import atexit
 import os
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable
-from functools import partial
+from functools import cache, partial
 from typing import Any, TypeVar
 from uuid import uuid4
 
@@ -38,8 +39,31 @@ _TOPIC_OF = {topic.kind: topic for topic in TOPICS}
 AnyNode = TypeVar('AnyNode', bound=Node)
 
 
+@cache
+def context_of(side: str) -> Context:
+    """A context of this process: one for the nodes under test, another for their peers.
+
+    They are never taken down. Deleting a participant of Fast DDS that has just seen another come
+    or go can wait forever, with the GIL held (Fast DDS issue 6513); so the process ends instead.
+    """
+    context = Context()
+    rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
+    atexit.register(_leave)
+    return context
+
+
+exit_status = 0
+"""What the process ends with; set when the session is over."""
+
+
+def _leave() -> None:
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(exit_status)
+
+
 class Graph:
-    """Nodes of one test, each in a context and an executor of its own, in a namespace of the test.
+    """Nodes of one test, each with an executor of its own, in a namespace of the test.
 
     They are spun in turns by the thread of the test: nothing happens but inside
     :meth:`spin_until`.
@@ -48,32 +72,29 @@ class Graph:
     def __init__(self) -> None:
         """No nodes yet."""
         self.namespace = f'/test_{uuid4().hex[:8]}'
-        self._members: dict[Node, tuple[Context, SingleThreadedExecutor]] = {}
+        self._members: dict[Node, SingleThreadedExecutor] = {}
 
     def add(self, make_node: Callable[..., AnyNode], *arguments: Any, **options: Any) -> AnyNode:
-        """Make a node; it gets the test's namespace."""
-        context = Context()
-        rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
+        """Make a node; it gets the test's namespace, and peers are in another context."""
+        is_peer = (
+            isinstance(make_node, type) and make_node.__module__.split('.')[0] != 'blocks_planning'
+        )
+        context = context_of('peers' if is_peer else 'nodes')
         options.setdefault('namespace', self.namespace)
-        try:
-            node = make_node(*arguments, context=context, **options)
-        except BaseException:
-            context.try_shutdown()
-            raise
+        node = make_node(*arguments, context=context, **options)
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
-        self._members[node] = (context, executor)
+        self._members[node] = executor
         return node
 
     def remove(self, node: Node) -> None:
-        """End a node, and the context that it lives in."""
-        context, executor = self._members.pop(node)
+        """End a node."""
+        executor = self._members.pop(node)
         finish = getattr(node, 'finish', None)
         if finish is not None:
             finish()
         executor.shutdown(timeout_sec=1.0)
         node.destroy_node()
-        context.try_shutdown()
 
     def spin_until(self, condition: Callable[[], object], deadline_s: float = DEADLINE_S) -> None:
         """Spin all nodes until a condition holds.
@@ -84,7 +105,7 @@ class Graph:
         end = time.monotonic() + deadline_s
         while not condition():
             assert time.monotonic() < end, f'not within {deadline_s} s'
-            for _, executor in list(self._members.values()):
+            for executor in list(self._members.values()):
                 executor.spin_once(timeout_sec=_SPIN_S)
 
     def close(self) -> None:

@@ -7,6 +7,7 @@ succeed or a record does not hold, 2 bad input, 130 interrupted.
 from __future__ import annotations
 
 import sys
+from typing import NoReturn
 
 import click
 
@@ -68,4 +69,11 @@ def main() -> None:
     except BrokenPipeError:  # the reader of our output has seen enough
         sys.stderr.close()
         code = 0
+    _leave(code)
+
+
+def _leave(code: int) -> NoReturn:
+    runtime = sys.modules.get('blocks_planning.ros.runtime')
+    if runtime is not None:
+        runtime.leave_if_up(code)
     sys.exit(code)

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import rclpy
-import rclpy.utilities
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
@@ -106,7 +105,9 @@ class Bringup:
         return NodeProcess(name, arguments, self._environment)
 
     def run(self, on_tick: Callable[[Scene | None], None]) -> int:
-        """Run the script to its end; always take everything down again.
+        """Run the script to its end; always take all processes down again.
+
+        Of this process, rclpy stays up: see :func:`blocks_planning.ros.runtime.leave_if_up`.
 
         Args:
             on_tick: called some times a second with what there is to see.
@@ -144,7 +145,6 @@ class Bringup:
         finally:
             stop_all(self._processes)
             executor.shutdown(timeout_sec=_SPIN_S)
-            rclpy.utilities.try_shutdown()
             for number, handler in before.items():
                 signal.signal(number, handler)
 

@@ -18,6 +18,7 @@ import time
 import traceback
 from collections.abc import Callable
 from pathlib import Path
+from typing import NoReturn
 
 import rclpy
 import rclpy.utilities
@@ -83,9 +84,24 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         rclpy.utilities.try_shutdown()
     for failure in failures:
         traceback.print_exception(failure)
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(CRASHED if failures else getattr(node, 'exit_code', 0))
+    _leave(CRASHED if failures else getattr(node, 'exit_code', 0))
+
+
+def leave_if_up(code: int) -> None:
+    """End the process now if rclpy was initialised in it.
+
+    Deleting a participant of Fast DDS that has just seen others go can wait forever, with the GIL
+    held (Fast DDS issue 6513). The end of the process takes it down without that.
+    """
+    if rclpy.utilities.ok():
+        _leave(code)
+
+
+def _leave(code: int) -> NoReturn:
+    for stream in (sys.stdout, sys.stderr):
+        if not stream.closed:
+            stream.flush()
+    os._exit(code)
 
 
 def _wait(stop: threading.Event) -> None:

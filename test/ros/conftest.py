@@ -4,8 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+import peers
 import pytest
 from peers import Graph
+
+
+def pytest_sessionfinish(exitstatus: int) -> None:
+    """A process that had nodes ends with what the session says."""
+    peers.exit_status = int(exitstatus)
 
 
 @pytest.fixture
