@@ -12,7 +12,7 @@ from blocks_planning.board.stimuli import Stimulus, find_stimuli
 from blocks_planning.board.task import Task
 from blocks_planning.search.result import DEFAULT_BUDGET
 from blocks_planning.search.searches import DIVISORS, EXECUTIONS, SEARCHES, make_search
-from blocks_planning.subgoals.registry import STRATEGIES, make_strategy
+from blocks_planning.subgoals.registry import PLANNERS, make_planner
 from blocks_planning.subgoals.scoping import COMMITS
 from blocks_planning.trials.spec import TrialSpec
 
@@ -33,7 +33,7 @@ _SEARCH_SETTINGS = ('depth', 'iterations', 'divisor', 'execute')
 _PLANNER_OPTIONS = (
     click.option(
         '--strategy',
-        type=click.Choice(list(STRATEGIES)),
+        type=click.Choice(list(PLANNERS)),
         default='scoping',
         show_default=True,
         help='How subgoals are chosen.',
@@ -102,7 +102,7 @@ def specs_of(addresses: tuple[str, ...], seeds: int, options: dict[str, Any]) ->
             out of its range.
         StimulusError: for an address that names nothing.
     """
-    strategy = make_strategy(options['strategy'], _given(options, _STRATEGY_SETTINGS))
+    strategy = make_planner(options['strategy'], _given(options, _STRATEGY_SETTINGS))
     search = make_search(options['search'], _given(options, _SEARCH_SETTINGS))
     first = options['seed']
     return [

@@ -28,7 +28,7 @@ from blocks_planning.experiments.spec import Experiment, SweepSpec
 from blocks_planning.located import Located, read_yaml
 from blocks_planning.resources import resource_directories
 from blocks_planning.search.searches import make_search
-from blocks_planning.subgoals.registry import make_strategy
+from blocks_planning.subgoals.registry import make_planner
 from blocks_planning.trials.script import (
     read_budget,
     read_planners,
@@ -72,6 +72,6 @@ def _experiment(item: Located) -> Experiment:
     return Experiment(
         name=read_text(entries['name']),
         searches=tuple(read_planners(entries['searches'], make_search)),
-        strategies=tuple(read_planners(entries['strategies'], make_strategy)),
+        strategies=tuple(read_planners(entries['strategies'], make_planner)),
         budget=read_budget(entries),
     )

@@ -128,11 +128,13 @@ def _cancelled(memory: scribe.Memory, outcome: Outcome) -> TrialRecord:
         left -= executed
         if executed or not entry.decision.subgoals:
             decisions.append(replace(entry, executed=executed))
+    places = {entry.placed for entry in decisions}
     return replace(
         record,
         status=TrialStatus.CANCELLED,
         placements=record.placements[: outcome.blocks],
         decisions=tuple(decisions),
+        proposals=tuple(p for p in record.proposals if p.sequence in places),
     )
 
 

@@ -9,6 +9,7 @@ from blocks_planning.ros.topics import (
     ACTION_OUTCOME,
     OUTCOME,
     PLAN,
+    PROPOSAL,
     SEARCH_REQUEST,
     SEARCH_RESULT,
     STATE,
@@ -29,7 +30,9 @@ class NodeTopics(NamedTuple):
 
 WORLD = NodeTopics('world', (TRIAL, ACTION, OUTCOME), (STATE, ACTION_OUTCOME))
 SUBGOAL_SELECTOR = NodeTopics(
-    'subgoal_selector', (TRIAL, STATE, SEARCH_RESULT, OUTCOME), (SEARCH_REQUEST, SUBGOAL)
+    'subgoal_selector',
+    (TRIAL, STATE, SEARCH_RESULT, PROPOSAL, OUTCOME),
+    (SEARCH_REQUEST, SUBGOAL),
 )
 ACTION_SEARCHER = NodeTopics(
     'action_searcher',

@@ -8,9 +8,9 @@ STREAM_DEPTH = 1000
 """A queue that is shallower at either end than a burst is long loses messages without a word."""
 
 
-def latched_state() -> QoSProfile:
-    """For who publishes what holds until further notice: the latest reaches late comers too."""
-    return _profile(1, DurabilityPolicy.TRANSIENT_LOCAL)
+def latched_state(depth: int = 1) -> QoSProfile:
+    """For who publishes what holds until further notice: the latest reach late comers too."""
+    return _profile(depth, DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def every_latched_state() -> QoSProfile:

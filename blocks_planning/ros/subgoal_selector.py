@@ -1,8 +1,8 @@
-"""Node ``subgoal_selector``: which region comes next (none, scoping or full planning).
+"""Node ``subgoal_selector``: which region comes next (none, scoping, full planning, a person).
 
 | | |
 |---|---|
-| listens | `trial`, `state`, `outcome` (latched), `search/result` (stream) |
+| listens | `trial`, `state`, `subgoal/proposal`, `outcome` (latched), `search/result` (stream) |
 | says | `search/request` (stream), `subgoal` (latched) |
 | parameters | `remind_period_s` |
 """

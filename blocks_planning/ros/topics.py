@@ -5,6 +5,7 @@
 | `trial` | which trial runs | latched |
 | `state` | the board | latched |
 | `search/request`, `search/result` | what filling a region takes | stream |
+| `subgoal/proposal` | a person's word on what to build next | latched, all |
 | `subgoal` | which region comes next, and all decisions so far | latched |
 | `plan` | the placements about to be carried out | latched |
 | `action`, `action/outcome` | a block to drop, and what became of it | stream |
@@ -31,6 +32,7 @@ class Topic(NamedTuple):
 
     ``from_ros`` takes the board of the trial that runs, but on `trial` and `outcome`.
     ``to_ros`` takes it too, but on `trial`; on `outcome` it takes a trial's id and its record.
+    ``depth`` is how many of a latched topic's messages reach who comes late.
     """
 
     name: str
@@ -39,6 +41,7 @@ class Topic(NamedTuple):
     to_ros: Callable[..., Any]
     from_ros: Callable[..., Any]
     latched: bool = False
+    depth: int = 1
 
     @property
     def needs_board(self) -> bool:
@@ -48,7 +51,7 @@ class Topic(NamedTuple):
     @property
     def publisher_qos(self) -> QoSProfile:
         """For who says it."""
-        return qos.latched_state() if self.latched else qos.stream()
+        return qos.latched_state(self.depth) if self.latched else qos.stream()
 
     @property
     def subscription_qos(self) -> QoSProfile:
@@ -86,6 +89,15 @@ SEARCH_RESULT = Topic(
     search.answer_to_ros,
     search.answer_from_ros,
 )
+PROPOSAL = Topic(
+    'subgoal/proposal',
+    ros.Proposal,
+    core.ProposalMade,
+    decisions.proposal_to_ros,
+    decisions.proposal_from_ros,
+    latched=True,
+    depth=qos.STREAM_DEPTH,
+)
 SUBGOAL = Topic(
     'subgoal',
     ros.Subgoal,
@@ -121,6 +133,7 @@ TOPICS = (
     STATE,
     SEARCH_REQUEST,
     SEARCH_RESULT,
+    PROPOSAL,
     SUBGOAL,
     PLAN,
     ACTION,

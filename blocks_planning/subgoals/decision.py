@@ -16,6 +16,7 @@ from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Mask
 from blocks_planning.board.task import Task
 from blocks_planning.search.result import SolveResult, SolveStatus
+from blocks_planning.subgoals.proposals import Proposal
 
 
 class Query(NamedTuple):
@@ -33,7 +34,7 @@ class Candidate:
     """A sequence of subgoals that was considered (of one subgoal, when scoping).
 
     Attributes:
-        heights: of its regions, rising.
+        heights: of its regions, rising; none for a region of another shape.
         cells: r, the cells that it would add.
         planning_cost: c [states], up to and including its first unsolved subgoal.
         value: V = r - lambda * c; None if a subgoal is unsolved, or nothing is weighed.
@@ -94,8 +95,23 @@ class Strategy(Protocol):
 
     name: ClassVar[str]
 
-    def decide(self, task: Task, built: Mask, seed: int, known: Known) -> list[Query] | Decision:
-        """Decide in a state that is not complete, or say which queries are still unanswered."""
+    def decide(
+        self,
+        task: Task,
+        built: Mask,
+        seed: int,
+        known: Known,
+        proposals: tuple[Proposal, ...] = (),
+    ) -> list[Query] | Decision:
+        """Decide in a state that is not complete, or say which queries are still unanswered.
+
+        Args:
+            task: what to build.
+            built: the state.
+            seed: of every tie.
+            known: answered queries.
+            proposals: what a person has proposed in this state; only a person's strategy looks.
+        """
         ...
 
 

@@ -23,6 +23,7 @@ from blocks_planning.subgoals.decision import (
     Subgoal,
     subgoal_of,
 )
+from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.subgoals.regions import Region, regions_above
 
 
@@ -41,7 +42,14 @@ class FullSubgoals:
     def __post_init__(self) -> None:
         object.__setattr__(self, 'lam', check_lambda(self.lam, zero_allowed=False))
 
-    def decide(self, task: Task, built: Mask, seed: int, known: Known) -> list[Query] | Decision:
+    def decide(
+        self,
+        task: Task,
+        built: Mask,
+        seed: int,
+        known: Known,
+        proposals: tuple[Proposal, ...] = (),
+    ) -> list[Query] | Decision:
         """See :class:`Strategy`."""
         regions = regions_above(task, built)
         missing = _unanswered(regions, built, known)

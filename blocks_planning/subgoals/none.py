@@ -8,6 +8,7 @@ from typing import ClassVar
 from blocks_planning.board.geometry import Mask, area
 from blocks_planning.board.task import Task
 from blocks_planning.subgoals.decision import Candidate, Decision, Known, Query, subgoal_of
+from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.subgoals.regions import regions_above
 
 
@@ -17,7 +18,14 @@ class NoSubgoals:
 
     name: ClassVar[str] = 'none'
 
-    def decide(self, task: Task, built: Mask, seed: int, known: Known) -> list[Query] | Decision:
+    def decide(
+        self,
+        task: Task,
+        built: Mask,
+        seed: int,
+        known: Known,
+        proposals: tuple[Proposal, ...] = (),
+    ) -> list[Query] | Decision:
         """See :class:`Strategy`. Nothing is weighed, and considering costs nothing."""
         regions = regions_above(task, built)[-1:]
         if not regions:

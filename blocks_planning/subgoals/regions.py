@@ -29,3 +29,9 @@ def regions_above(task: Task, built: Mask) -> list[Region]:
             regions.append(Region(height, cells))
         previous = cells
     return regions
+
+
+def height_of(task: Task, region: Mask) -> int | None:
+    """The lowest height below which the target rows are a region; None for another shape."""
+    heights = range(1, task.board.height + 1)
+    return next((height for height in heights if task.rows(height) == region), None)

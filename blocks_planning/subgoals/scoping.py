@@ -10,6 +10,7 @@ from blocks_planning.board.task import Task
 from blocks_planning.settings import check_word
 from blocks_planning.subgoals.choosing import best, check_lambda, value_of
 from blocks_planning.subgoals.decision import Candidate, Decision, Known, Query, subgoal_of
+from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.subgoals.regions import regions_above
 
 COMMITS = ('subgoal', 'action')
@@ -33,7 +34,14 @@ class Scoping:
         object.__setattr__(self, 'lam', check_lambda(self.lam, zero_allowed=True))
         check_word('commit', self.commit, COMMITS)
 
-    def decide(self, task: Task, built: Mask, seed: int, known: Known) -> list[Query] | Decision:
+    def decide(
+        self,
+        task: Task,
+        built: Mask,
+        seed: int,
+        known: Known,
+        proposals: tuple[Proposal, ...] = (),
+    ) -> list[Query] | Decision:
         """See :class:`Strategy`."""
         regions = regions_above(task, built)
         queries = [Query(built, region.cells) for region in regions]

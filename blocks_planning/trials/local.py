@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from blocks_planning.search.result import CancelToken, Problem, SolveStatus
 from blocks_planning.search.solve import solve
+from blocks_planning.subgoals.human import Human
+from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials import scribe, searcher, selector, world
-from blocks_planning.trials.messages import CancelTrial, Message, SearchAnswer, Solve, TrialStarted
+from blocks_planning.trials.messages import (
+    CancelTrial,
+    Message,
+    ProposalMade,
+    SearchAnswer,
+    Solve,
+    TrialStarted,
+)
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.trials.status import TrialStatus
 
 _PARTS = (world, selector, searcher, scribe)
 
@@ -20,6 +30,7 @@ def run_trial(
     spec: TrialSpec,
     cancel: CancelToken | None = None,
     observe: Callable[[Message], None] | None = None,
+    proposals: Iterable[Proposal] = (),
 ) -> TrialRecord:
     """Run a trial to its end.
 
@@ -27,11 +38,14 @@ def run_trial(
         spec: the trial.
         cancel: ends it, from another thread, with status ``cancelled``.
         observe: is shown every message, before the parts are; the trial goes on when it returns.
+        proposals: what a person says, one whenever it is the person's turn. A trial that waits
+            for more than there are ends with status ``cancelled``.
     """
     cancel = cancel or CancelToken()
     memories: list[Any] = [part.Memory() for part in _PARTS]
     messages: deque[Message] = deque([TrialStarted(spec.trial_id, spec)])
     cancelling = False
+    said_by_person = iter(proposals)
     while messages:
         message = messages.popleft()
         if observe is not None:
@@ -44,8 +58,19 @@ def run_trial(
         if cancel.cancelled and not cancelling:
             cancelling = True
             messages = deque([CancelTrial(spec.trial_id)])
+        if not messages and isinstance(spec.strategy, Human) and _is_building(memories[-1]):
+            messages.append(_next_word(spec.trial_id, said_by_person))
     record: TrialRecord = memories[-1].record()
     return record
+
+
+def _is_building(memory: scribe.Memory) -> bool:
+    return memory.trial is not None and memory.status is TrialStatus.BUILDING
+
+
+def _next_word(trial_id: str, proposals: Iterator[Proposal]) -> Message:
+    proposal = next(proposals, None)
+    return CancelTrial(trial_id) if proposal is None else ProposalMade(trial_id, proposal)
 
 
 def _answer(spec: TrialSpec, question: Solve, cancel: CancelToken) -> Message:

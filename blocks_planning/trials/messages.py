@@ -22,6 +22,7 @@ from blocks_planning.board.blocks import Placed, Placement
 from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.search.result import SolveResult
 from blocks_planning.subgoals.decision import Decision, Query, Subgoal
+from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials.record import DecisionRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
@@ -64,16 +65,26 @@ class SearchAnswer:
 
 
 @dataclass(frozen=True)
+class ProposalMade:
+    """A person has said what to build next, or not to."""
+
+    trial_id: str
+    proposal: Proposal
+
+
+@dataclass(frozen=True)
 class SubgoalChosen:
     """The subgoal to execute from the state with ``sequence`` on, or that the planner gives up.
 
     It carries all decisions of the trial so far, so that who missed one, or comes late, knows as
-    much as all others. The subgoal is the last one begun of the last decision.
+    much as all others. The subgoal is the last one begun of the last decision. ``proposals`` are
+    those of a person that led to the decisions.
     """
 
     trial_id: str
     sequence: int
     decisions: tuple[DecisionRecord, ...]
+    proposals: tuple[Proposal, ...] = ()
 
     @property
     def decision(self) -> Decision:
@@ -171,5 +182,5 @@ class Remind:
 
 Message: TypeAlias = (
     'TrialStarted | WorldState | SearchRequest | SearchAnswer | SubgoalChosen | Solve | '
-    'PlanMade | PlaceBlock | PlacementOutcome | CancelTrial | TrialEnded | Remind'
+    'ProposalMade | PlanMade | PlaceBlock | PlacementOutcome | CancelTrial | TrialEnded | Remind'
 )

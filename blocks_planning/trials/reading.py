@@ -14,8 +14,10 @@ from blocks_planning.board.task import Task
 from blocks_planning.errors import InvalidInput, RecordError
 from blocks_planning.search.result import MAX_BUDGET, SolveStatus
 from blocks_planning.search.searches import make_search
+from blocks_planning.settings import setting_names
 from blocks_planning.subgoals.decision import Candidate, Decision, Subgoal
-from blocks_planning.subgoals.registry import make_strategy
+from blocks_planning.subgoals.proposals import Proposal, ProposalKind
+from blocks_planning.subgoals.registry import STRATEGIES, make_strategy
 from blocks_planning.trials.record import FORMAT, VERSION, DecisionRecord, TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
@@ -108,6 +110,7 @@ def record_from_json(data: object, place: str) -> TrialRecord:
             status=fields.word('status', TrialStatus),
             placements=fields.placements(),
             decisions=tuple(_decision(entry) for entry in fields.parts('decisions')),
+            proposals=tuple(_proposal(entry) for entry in fields.parts('proposals')),
         )
     except InvalidInput as error:
         if isinstance(error, RecordError):
@@ -118,13 +121,14 @@ def record_from_json(data: object, place: str) -> TrialRecord:
 
 
 def _spec(fields: _Fields) -> TrialSpec:
-    strategy = {
-        key: fields.data[key] for key in ('lambda', 'commit') if fields.get(key) is not None
-    }
+    name = fields.get('strategy', str)
+    own = setting_names(STRATEGIES[name]) if name in STRATEGIES else []
+    given = [key for key in ('lambda', 'commit') if fields.get(key) is not None]
+    strategy = {key: fields.get(key) for key in dict.fromkeys([*given, *own])}
     return TrialSpec(
         stimulus=fields.get('stimulus', str),
         task=_task(fields),
-        strategy=make_strategy(fields.get('strategy', str), strategy),
+        strategy=make_strategy(name, strategy),
         search=make_search(fields.get('search', str), fields.get('search_settings', dict)),
         seed=fields.get('seed', int),
         budget=fields.get('budget', int),
@@ -156,6 +160,16 @@ def _decision(fields: _Fields) -> DecisionRecord:
         subgoal_planning_cost=fields.count('subgoal_planning_cost'),
     )
     return DecisionRecord(fields.count('placed'), decision, fields.count('executed'))
+
+
+def _proposal(fields: _Fields) -> Proposal:
+    return Proposal(
+        sequence=fields.count('placed'),
+        number=fields.count('number'),
+        kind=fields.word('kind', ProposalKind),
+        region=fields.mask('region'),
+        thinking_s=fields.get('thinking_s', float),
+    )
 
 
 def _candidate(fields: _Fields) -> Candidate:

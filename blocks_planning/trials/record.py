@@ -14,6 +14,7 @@ from typing import Any
 
 from blocks_planning.board.blocks import Placed
 from blocks_planning.subgoals.decision import Candidate, Decision, Subgoal
+from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 
@@ -38,12 +39,13 @@ class DecisionRecord:
 
 @dataclass(frozen=True)
 class TrialRecord:
-    """What happened in a trial."""
+    """What happened in a trial; ``proposals`` are those of a person that led to its decisions."""
 
     spec: TrialSpec
     status: TrialStatus
     placements: tuple[Placed, ...]
     decisions: tuple[DecisionRecord, ...]
+    proposals: tuple[Proposal, ...] = ()
 
     def executed_subgoals(self) -> Iterator[Subgoal]:
         """Every subgoal that was begun, in order."""
@@ -90,6 +92,7 @@ class TrialRecord:
             'solution_cost': self.solution_cost,
             'placements': [list(placed) for placed in self.placements],
             'decisions': [_decision_to_json(entry) for entry in self.decisions],
+            'proposals': [_proposal_to_json(proposal) for proposal in self.proposals],
         }
 
     def to_line(self) -> str:
@@ -107,6 +110,16 @@ def _decision_to_json(entry: DecisionRecord) -> dict[str, Any]:
         'subgoal_planning_cost': decision.subgoal_planning_cost,
         'candidates': [_candidate_to_json(candidate) for candidate in decision.candidates],
         'subgoals': [_subgoal_to_json(subgoal) for subgoal in decision.subgoals],
+    }
+
+
+def _proposal_to_json(proposal: Proposal) -> dict[str, Any]:
+    return {
+        'placed': proposal.sequence,
+        'number': proposal.number,
+        'kind': proposal.kind.value,
+        'region': hex(proposal.region),
+        'thinking_s': proposal.thinking_s,
     }
 
 

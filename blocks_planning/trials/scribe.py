@@ -31,7 +31,8 @@ class Memory:
             raise ValueError('there is no record before a trial begins')
         placements = () if self.state is None else self.state.placements
         decisions = () if self.chosen is None else self.chosen.decisions
-        return TrialRecord(self.trial.spec, self.status, placements, decisions)
+        proposals = () if self.chosen is None else self.chosen.proposals
+        return TrialRecord(self.trial.spec, self.status, placements, decisions, proposals)
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:

@@ -7,10 +7,14 @@ from dataclasses import dataclass, field, replace
 
 from blocks_planning.board import rules
 from blocks_planning.board.geometry import Mask
+from blocks_planning.board.task import Task
 from blocks_planning.search.result import SolveResult
 from blocks_planning.subgoals.decision import Decision, Query
+from blocks_planning.subgoals.human import Human, used
+from blocks_planning.subgoals.proposals import Proposal, proposed_at
 from blocks_planning.trials.messages import (
     Message,
+    ProposalMade,
     Remind,
     SearchAnswer,
     SearchRequest,
@@ -34,6 +38,7 @@ class Memory:
         known: answered queries.
         asked: queries that were sent, answered or not.
         chosen: the subgoal that is being executed.
+        proposals: of a person, in the order of their numbers in every state.
     """
 
     trial: TrialStarted | None = None
@@ -41,6 +46,7 @@ class Memory:
     known: Mapping[Query, SolveResult] = field(default_factory=dict)
     asked: tuple[Query, ...] = ()
     chosen: SubgoalChosen | None = None
+    proposals: tuple[Proposal, ...] = ()
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
@@ -59,10 +65,19 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
         case SearchAnswer(_, query, result) if state is not None and query in memory.asked:
             known = {**memory.known, query: result}
             return _go_on(replace(memory, known=known), trial.spec, state)
+        case ProposalMade(_, proposal) if _is_next(memory, trial.spec, proposal):
+            memory = replace(memory, proposals=(*memory.proposals, proposal))
+            return (memory, ()) if state is None else _go_on(memory, trial.spec, state)
         case Remind():
             unanswered = [query for query in memory.asked if query not in memory.known]
             return memory, tuple(SearchRequest(trial.trial_id, query) for query in unanswered)
     return memory, ()
+
+
+def _is_next(memory: Memory, spec: TrialSpec, proposal: Proposal) -> bool:
+    """Whether a person is asked at all, and the proposals before this one were all taken."""
+    earlier = proposed_at(memory.proposals, proposal.sequence)
+    return isinstance(spec.strategy, Human) and proposal.number == len(earlier)
 
 
 def _go_on(
@@ -80,14 +95,15 @@ def _go_on(
         if at is None or (at == state.sequence and state.status is not TrialStatus.BUILDING):
             break
         if chosen is not None and _has_next(chosen, states[at]):
-            chosen = _chosen(state, at, chosen.decisions, executed=chosen.index + 2)
+            chosen = _chosen(chosen, at, executed=chosen.index + 2)
             continue
-        answer = spec.strategy.decide(spec.task, states[at], spec.seed, memory.known)
+        proposals = proposed_at(memory.proposals, at)
+        answer = spec.strategy.decide(spec.task, states[at], spec.seed, memory.known, proposals)
         if not isinstance(answer, Decision):
             return _ask(replace(memory, chosen=chosen), state, answer)
-        earlier = () if chosen is None else chosen.decisions
-        entry = DecisionRecord(at, answer, 0)
-        chosen = _chosen(state, at, (*earlier, entry), executed=min(1, len(answer.subgoals)))
+        chosen = _decided(
+            spec.task, state.trial_id, chosen, DecisionRecord(at, answer, 0), proposals
+        )
     said = (chosen,) if chosen is not None and chosen != memory.chosen else ()
     return replace(memory, chosen=chosen), said
 
@@ -111,11 +127,29 @@ def _has_next(chosen: SubgoalChosen, built: Mask) -> bool:
     return filled and chosen.index + 1 < len(chosen.decision.subgoals)
 
 
-def _chosen(
-    state: WorldState, at: int, decisions: tuple[DecisionRecord, ...], executed: int
+def _chosen(chosen: SubgoalChosen, at: int, executed: int) -> SubgoalChosen:
+    """The same decisions, when so many subgoals of the last one have been begun."""
+    last = replace(chosen.decisions[-1], executed=executed)
+    return replace(chosen, sequence=at, decisions=(*chosen.decisions[:-1], last))
+
+
+def _decided(
+    task: Task,
+    trial_id: str,
+    before: SubgoalChosen | None,
+    entry: DecisionRecord,
+    proposals: tuple[Proposal, ...],
 ) -> SubgoalChosen:
-    last = replace(decisions[-1], executed=executed)
-    return SubgoalChosen(state.trial_id, at, (*decisions[:-1], last))
+    """What has been chosen after another decision."""
+    if before is None:
+        before = SubgoalChosen(trial_id, entry.placed, ())
+    led_here = used(task, entry.decision, proposals) if proposals else ()
+    chosen = replace(
+        before,
+        decisions=(*before.decisions, entry),
+        proposals=(*before.proposals, *led_here),
+    )
+    return _chosen(chosen, entry.placed, executed=min(1, len(entry.decision.subgoals)))
 
 
 def _ask(

@@ -66,6 +66,7 @@ class TrialSpec:
             'strategy': self.strategy.name,
             'lambda': strategy.get('lambda'),
             'commit': strategy.get('commit'),
+            **{key: strategy[key] for key in ('participant', 'costs') if key in strategy},
             'search': self.search.name,
             'search_settings': settings.settings_of(self.search),
             'seed': self.seed,

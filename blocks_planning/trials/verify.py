@@ -11,7 +11,9 @@ from blocks_planning.search.result import SolveStatus
 from blocks_planning.subgoals.choosing import best, value_of
 from blocks_planning.subgoals.decision import Candidate, Subgoal
 from blocks_planning.subgoals.full import rising_sequences
-from blocks_planning.subgoals.regions import regions_above
+from blocks_planning.subgoals.human import Human
+from blocks_planning.subgoals.proposals import ProposalKind, decisive, proposed_at, target_of
+from blocks_planning.subgoals.regions import Region, height_of, regions_above
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.status import TrialStatus
@@ -37,6 +39,8 @@ def contradictions(record: TrialRecord) -> Iterator[str]:
     for index, entry in enumerate(record.decisions):
         for sentence in _wrong_decision(record, entry, states):
             yield f'decision {index}: {sentence}'
+    if record.proposals or isinstance(record.spec.strategy, Human):
+        yield from _wrong_proposals(record)
     yield from _gaps(record)
 
 
@@ -94,32 +98,63 @@ def _wrong_decision(
     if entry.placed >= len(states) or states[entry.placed] != decision.built:
         yield f'the state after {entry.placed} placements is not {decision.built:#x}'
         return
-    expected = _considered(record, decision.built)
-    if [candidate.heights for candidate in decision.candidates] != expected:
+    expected = _considered(record, entry)
+    if [candidate.heights for candidate in decision.candidates] != [
+        tuple(region.height for region in regions if region.height) for regions in expected
+    ]:
         yield 'its candidates are not those of the strategy'
         return
     for index, candidate in enumerate(decision.candidates):
-        for sentence in _wrong_candidate(record, candidate, decision.built):
+        cells = area(expected[index][-1].cells) - area(decision.built)
+        for sentence in _wrong_candidate(record, candidate, cells):
             yield f'candidate {index}: {sentence}'
     yield from _wrong_choice(record, entry)
     yield from _wrong_cost(record, entry)
-    yield from _wrong_way(record, entry, states)
+    yield from _wrong_way(record, entry, states, expected)
 
 
-def _considered(record: TrialRecord, built: Mask) -> list[tuple[int, ...]]:
-    """The heights of all candidates that the strategy has in a state, in order."""
-    regions = regions_above(record.spec.task, built)
+def _considered(record: TrialRecord, entry: DecisionRecord) -> list[tuple[Region, ...]]:
+    """The regions of all candidates that the strategy has in a state, in order.
+
+    A region that is not the rows below a height has height 0.
+    """
+    task, built = record.spec.task, entry.decision.built
+    regions = regions_above(task, built)
     match record.spec.strategy.name:
         case 'none':
-            return [(region.height,) for region in regions[-1:]]
+            return [(region,) for region in regions[-1:]]
         case 'scoping':
-            return [(region.height,) for region in regions]
-    return [tuple(region.height for region in sequence) for sequence in rising_sequences(regions)]
+            return [(region,) for region in regions]
+        case 'human':
+            said = decisive(task, built, proposed_at(record.proposals, entry.placed))
+            targets = [
+                target_of(task, built, proposal.region)
+                for proposal in said
+                if proposal.kind is ProposalKind.BUILD
+            ]
+            return [(Region(height_of(task, target) or 0, target),) for target in targets]
+    return list(rising_sequences(regions))
 
 
-def _wrong_candidate(record: TrialRecord, candidate: Candidate, built: Mask) -> Iterator[str]:
-    task = record.spec.task
-    cells = area(task.rows(candidate.heights[-1])) - area(built)
+def _wrong_proposals(record: TrialRecord) -> Iterator[str]:
+    """Proposals that do not lead to the decisions, one by one."""
+    left = list(record.proposals)
+    for index, entry in enumerate(record.decisions):
+        here = proposed_at(record.proposals, entry.placed)
+        numbers = [proposal.number for proposal in here]
+        asking = list(decisive(record.spec.task, entry.decision.built, here))
+        gave_up = bool(asking) and asking[-1].kind is ProposalKind.GIVE_UP
+        decides = bool(asking) and asking[-1] == here[-1]
+        if numbers != list(range(len(here))) or left[: len(here)] != list(here):
+            yield f'decision {index}: its proposals are not in order'
+        elif not decides or gave_up != (entry.decision.chosen is None):
+            yield f'decision {index}: its last proposal does not lead to it'
+        left = left[len(here) :]
+    if left:
+        yield f'{len(left)} proposals belong to no decision'
+
+
+def _wrong_candidate(record: TrialRecord, candidate: Candidate, cells: int) -> Iterator[str]:
     if candidate.cells != cells:
         yield f'adds {cells} cells, not {candidate.cells}'
     if candidate.status is SolveStatus.CANCELLED:
@@ -151,7 +186,7 @@ def _wrong_choice(record: TrialRecord, entry: DecisionRecord) -> Iterator[str]:
         yield f'candidate {decision.chosen} is not the best, or not the one that the seed draws'
     if chosen.planning_cost != sum(subgoal.planning_cost for subgoal in decision.subgoals):
         yield 'the costs of its subgoals do not add up to that of the chosen candidate'
-    if chosen.heights != tuple(subgoal.height for subgoal in decision.subgoals):
+    if chosen.heights != tuple(s.height for s in decision.subgoals if s.height is not None):
         yield 'its subgoals are not those of the chosen candidate'
 
 
@@ -163,14 +198,22 @@ def _wrong_cost(record: TrialRecord, entry: DecisionRecord) -> Iterator[str]:
         yield f'considering cost {expected} states, not {decision.subgoal_planning_cost}'
 
 
-def _wrong_way(record: TrialRecord, entry: DecisionRecord, states: list[Mask]) -> Iterator[str]:
+def _wrong_way(
+    record: TrialRecord,
+    entry: DecisionRecord,
+    states: list[Mask],
+    considered: list[tuple[Region, ...]],
+) -> Iterator[str]:
     """Subgoals whose plan does not fill them, or that were not executed as planned."""
     task = record.spec.task
     built, placed = entry.decision.built, entry.placed
+    chosen = entry.decision.chosen
+    regions = considered[chosen] if chosen is not None and chosen < len(considered) else ()
     for index, subgoal in enumerate(entry.decision.subgoals):
         way = _replayed(task.board, built, subgoal.placements)
         fills = len(way) == len(subgoal.placements) + 1 and way[-1] == subgoal.region
-        if not fills or subgoal.region != task.rows(subgoal.height or 0):
+        meant = regions[index].cells if index < len(regions) else None
+        if not fills or subgoal.region != meant:
             yield f'subgoal {index}: its plan does not fill it'
             return
         yield from (f'subgoal {index}: {said}' for said in _wrong_subgoal(record, subgoal))
@@ -199,7 +242,7 @@ def differs_from_rerun(record: TrialRecord) -> Iterator[str]:
     """What is different when the trial is run again from its specification."""
     if record.status is TrialStatus.CANCELLED:
         return
-    again = run_trial(record.spec).to_json()
+    again = run_trial(record.spec, proposals=record.proposals).to_json()
     for key, value in record.to_json().items():
         if again[key] != value:
             yield f'run again, {key} is not the same'

@@ -98,7 +98,8 @@ class Scene:
     def record(self) -> TrialRecord:
         """What the record would be if the trial were over now; it has all counts and costs."""
         decisions = () if self.chosen is None else self.chosen.decisions
-        return TrialRecord(self.spec, self.status, self.placements, decisions)
+        proposals = () if self.chosen is None else self.chosen.proposals
+        return TrialRecord(self.spec, self.status, self.placements, decisions, proposals)
 
 
 def scene_of(spec: TrialSpec) -> Scene:
@@ -160,7 +161,8 @@ def _choices(record: TrialRecord) -> Iterator[SubgoalChosen]:
         starts = list(_starts((entry,))) or [entry.placed]
         for executed, start in enumerate(starts, start=min(entry.executed, 1)):
             decisions = (*record.decisions[:index], replace(entry, executed=executed))
-            yield SubgoalChosen(record.spec.trial_id, start, decisions)
+            proposals = tuple(p for p in record.proposals if p.sequence <= entry.placed)
+            yield SubgoalChosen(record.spec.trial_id, start, decisions, proposals)
 
 
 def _starts(decisions: tuple[DecisionRecord, ...]) -> Iterator[int]:

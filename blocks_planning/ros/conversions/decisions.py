@@ -17,8 +17,12 @@ from blocks_planning.ros.conversions.fields import cost, refuse, word
 from blocks_planning.ros.conversions.search import SOLVE_STATUSES
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.subgoals.decision import Candidate, Decision, Subgoal
-from blocks_planning.trials.messages import SubgoalChosen
+from blocks_planning.subgoals.proposals import Proposal, ProposalKind
+from blocks_planning.trials.messages import ProposalMade, SubgoalChosen
 from blocks_planning.trials.record import DecisionRecord
+
+MOST_PROPOSALS = 1000
+"""In one state; nobody thinks of so many, and memory stays bounded."""
 
 
 def subgoal_to_ros(board: Board, message: SubgoalChosen) -> ros.Subgoal:
@@ -26,14 +30,22 @@ def subgoal_to_ros(board: Board, message: SubgoalChosen) -> ros.Subgoal:
     kind = ros.Subgoal
     if message.subgoal is None:
         status, reason = kind.STATUS_NONE_SOLVABLE, 'no candidate could be solved'
+        if message.proposals:
+            reason = 'the person gave up'
     else:
         status, reason = kind.STATUS_CHOSEN, 'the candidate of highest value'
+        if message.proposals:
+            reason = 'the person proposed it, and it could be solved'
     return kind(
         trial_id=message.trial_id,
         sequence=message.sequence,
         status=status,
         reason=reason,
         decisions=[_decision_to_ros(board, entry) for entry in message.decisions],
+        proposals=[
+            proposal_to_ros(board, ProposalMade(message.trial_id, proposal))
+            for proposal in message.proposals
+        ],
     )
 
 
@@ -46,10 +58,49 @@ def subgoal_from_ros(board: Board, message: ros.Subgoal) -> SubgoalChosen:
     if not 1 <= len(decisions) <= board.size + 1:
         raise refuse('decisions', len(decisions), f'1 to {board.size + 1} decisions')
     kind = ros.Subgoal
-    chosen = SubgoalChosen(message.trial_id, message.sequence, decisions)
+    proposals = tuple(
+        _proposal_from_ros(board, proposal, f'proposals[{index}].')
+        for index, proposal in enumerate(message.proposals)
+    )
+    chosen = SubgoalChosen(message.trial_id, message.sequence, decisions, proposals)
     status = kind.STATUS_NONE_SOLVABLE if chosen.subgoal is None else kind.STATUS_CHOSEN
     word(str, message.status, 'status', (status,))
     return chosen
+
+
+def proposal_to_ros(board: Board, message: ProposalMade) -> ros.Proposal:
+    """See :class:`ProposalMade`."""
+    proposal = message.proposal
+    return ros.Proposal(
+        trial_id=message.trial_id,
+        sequence=proposal.sequence,
+        number=proposal.number,
+        kind=proposal.kind.value,
+        region=grid_to_ros(board, proposal.region),
+        thinking_s=proposal.thinking_s,
+    )
+
+
+def proposal_from_ros(board: Board, message: ros.Proposal) -> ProposalMade:
+    """See :class:`ProposalMade`."""
+    return ProposalMade(message.trial_id, _proposal_from_ros(board, message, ''))
+
+
+def _proposal_from_ros(board: Board, message: ros.Proposal, prefix: str) -> Proposal:
+    if message.sequence > board.size:
+        raise refuse(f'{prefix}sequence', message.sequence, f'0 to {board.size} placements')
+    if message.number >= MOST_PROPOSALS:
+        raise refuse(f'{prefix}number', message.number, f'0 to {MOST_PROPOSALS - 1}')
+    if not 0 <= message.thinking_s < math.inf:
+        raise refuse(f'{prefix}thinking_s', message.thinking_s, 'a finite number of 0 or more')
+    kinds = [kind.value for kind in ProposalKind]
+    return Proposal(
+        sequence=message.sequence,
+        number=message.number,
+        kind=word(ProposalKind, message.kind, f'{prefix}kind', kinds),
+        region=mask_on(board, message.region, f'{prefix}region'),
+        thinking_s=message.thinking_s,
+    )
 
 
 def _decision_to_ros(board: Board, entry: DecisionRecord) -> ros.Decision:
@@ -107,7 +158,7 @@ def _candidate_to_ros(candidate: Candidate) -> ros.Candidate:
 
 def _candidate_from_ros(board: Board, message: ros.Candidate, field: str) -> Candidate:
     heights = tuple(map(int, message.rows))
-    if not heights or list(heights) != sorted(set(heights)) or heights[-1] > board.height:
+    if list(heights) != sorted(set(heights)) or max(heights, default=0) > board.height:
         raise refuse(f'{field}.rows', list(heights), f'rising numbers up to {board.height}')
     if not math.isfinite(message.value):
         raise refuse(f'{field}.value', message.value, 'a finite number')

@@ -22,7 +22,16 @@ from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 
 _PLANNER_FIELDS = {'lambda': 'lambda_weight'}  # settings whose field has another name
-_ALL_SETTINGS = ('lambda', 'commit', 'depth', 'iterations', 'divisor', 'execute')
+_ALL_SETTINGS = (
+    'lambda',
+    'commit',
+    'participant',
+    'costs',
+    'depth',
+    'iterations',
+    'divisor',
+    'execute',
+)
 
 
 def spec_to_ros(trial_id: str, spec: TrialSpec) -> ros.TrialSpec:
