@@ -45,20 +45,27 @@ _FRAMES_PER_S = 8
     callback=refuse_nan,
     help='Seconds that placing a block takes, to watch it.  [default: 0]',
 )
+@click.option('--participant', default='', help='Code of the person who scopes in this session.')
 def run(
-    script: Path, out: Path, bag: Path | None, namespace: str, domain: int | None, pace: float
+    script: Path,
+    out: Path,
+    bag: Path | None,
+    namespace: str,
+    domain: int | None,
+    pace: float,
+    participant: str,
 ) -> int:
     """Bring up the ROS graph and run the trials of a script through it.
 
     Records go to trials.jsonl in the folder --out; trials whose records are there already are not
     run again. The exit code is 1 if a tower was not rebuilt perfectly.
     """
-    specs = read_script(script)
+    specs = read_script(script, participant)
     try:
         from blocks_planning.ros.bringup import Bringup, BringupSpec
     except ImportError as error:
         raise BlocksPlanningError(f'ROS 2 is not installed here: {error}') from None
-    spec = BringupSpec(script, out, bag, namespace, domain, pace)
+    spec = BringupSpec(script, out, bag, namespace, domain, pace, participant)
     records = RecordFile(spec.records)
     wanted = {trial.trial_id for trial in specs}
     done = len(wanted & records.finished)

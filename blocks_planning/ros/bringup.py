@@ -36,6 +36,7 @@ class BringupSpec:
         namespace: of all nodes, '' for none.
         domain: ROS domain; None for a free one.
         placing_s: how long placing a block takes [s].
+        participant: code of the person who scopes, '' for what the script says.
     """
 
     script: Path
@@ -44,6 +45,7 @@ class BringupSpec:
     namespace: str = ''
     domain: int | None = None
     placing_s: float = 0.0
+    participant: str = ''
 
     @property
     def records(self) -> Path:
@@ -97,6 +99,7 @@ class Bringup:
         if name == 'trial_orchestrator':
             parameters = {
                 'script': self._spec.script,
+                'participant': repr(self._spec.participant),
                 'out_dir': self._spec.out,
                 'wait_for': f'[{", ".join([*self._names, WATCHER.name])}]',
             }

@@ -142,13 +142,16 @@ class PartNode(Node):
             else:
                 converted = topic.from_ros(message)
         except InvalidInput as error:
-            self.refused += 1
-            self.get_logger().warning(
-                f'refused a message on {topic.name}: {error}',
-                throttle_duration_sec=WARN_PERIOD_S,
-            )
+            self.refuse(str(error), topic.name)
             return
         self.receive(converted)
+
+    def refuse(self, reason: str, topic: str) -> None:
+        """Count a message that is not taken, and say why, not too often."""
+        self.refused += 1
+        self.get_logger().warning(
+            f'refused a message on {topic}: {reason}', throttle_duration_sec=WARN_PERIOD_S
+        )
 
     def _on_match(self, status: QoSPublisherMatchedInfo) -> None:
         """A listener came: it may have missed what was asked before."""

@@ -8,7 +8,7 @@ With a ``script`` it runs the script's trials in order, leaves out those whose r
 | listens | `state`, `subgoal` (latched) |
 | says | `trial`, `outcome` (latched) |
 | action | `run_trial`: feedback with every state and subgoal; cancelling ends the trial |
-| parameters | `remind_period_s`; `script`; `out_dir`: where `trials.jsonl` is; `wait_for`: nodes that must be there before a trial begins; `peer_timeout_s`: how long it waits for them |
+| parameters | `remind_period_s`; `script`; `participant`: code of the person who scopes; `out_dir`: where `trials.jsonl` is; `wait_for`: nodes that must be there before a trial begins; `peer_timeout_s`: how long it waits for them |
 """
 
 from __future__ import annotations
@@ -43,12 +43,13 @@ from blocks_planning.trials.messages import (
     WorldState,
 )
 from blocks_planning.trials.recordfile import RecordFile
-from blocks_planning.trials.script import read_script
+from blocks_planning.trials.script import read_session
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 
 RECORDS = 'trials.jsonl'
 SCRIPT = Parameter('script', '', 'A trial script to run; none: wait for goals.')
+PARTICIPANT = Parameter('participant', '', 'Code of the person who scopes; none: as scripted.')
 OUT_DIR = Parameter('out_dir', '.', 'Folder of trials.jsonl.')
 WAIT_FOR = Parameter(
     'wait_for',
@@ -56,7 +57,7 @@ WAIT_FOR = Parameter(
     'Nodes that must be there before a trial begins.',
 )
 PEER_TIMEOUT = Parameter('peer_timeout_s', 30.0, 'How long to wait for them [s].', (0.1, 86400.0))
-PARAMETERS = (SCRIPT, OUT_DIR, WAIT_FOR, PEER_TIMEOUT)
+PARAMETERS = (SCRIPT, PARTICIPANT, OUT_DIR, WAIT_FOR, PEER_TIMEOUT)
 _LOOK_PERIOD_S = 0.02
 
 
@@ -70,9 +71,11 @@ class TrialOrchestrator(PartNode):
         self._stop = stop
         self._records = RecordFile(Path(self.values['out_dir']) / RECORDS)
         self._script: Iterator[TrialSpec] | None = None
+        self._pausing: Any = None
         if self.values['script']:
-            specs = read_script(Path(self.values['script']))
-            self._script = (s for s in specs if s.trial_id not in self._records.finished)
+            script = read_session(Path(self.values['script']), self.values['participant'])
+            self._script = (s for s in script.trials if s.trial_id not in self._records.finished)
+            self._pausing = self._make_pause(script.pause_s)
         self._goal: Any = None
         self._done: Future | None = None
         self._failures = 0
@@ -126,8 +129,23 @@ class TrialOrchestrator(PartNode):
         self._failures += record.status is not TrialStatus.SUCCESS
         if self._done is not None:
             self._done.set_result(outcome)
+        elif self._pausing is not None:
+            self._pausing.reset()
         elif self._script is not None:
             self._next_of_script()
+
+    def _make_pause(self, pause_s: float) -> Any:
+        """A timer that goes on with the script, once each time it is reset; None for no pause."""
+        if pause_s <= 0:
+            return None
+
+        def go_on() -> None:
+            timer.cancel()
+            self._next_of_script()
+
+        timer = self.create_timer(pause_s, go_on, clock=self.steady)
+        timer.cancel()
+        return timer
 
     def _next_of_script(self) -> None:
         spec = next(self._script, None) if self._script is not None else None
