@@ -106,8 +106,8 @@ def test_whole_graph_with_a_person(graph: Graph, tmp_path: Path) -> None:
     records = read_records(out / 'trials.jsonl')
     assert [record.spec for record in records] == specs
     assert proposer.person is not None
-    used = records[-1].proposals
-    assert used == tuple(proposer.person.said[: len(used)])
+    used = records[-1].proposals  # the peer may say a word too many: topics are not ordered
+    assert [word for word in proposer.person.said if word in used] == list(used) != []
     for record, line in zip(records, record_lines(out), strict=True):
         assert list(contradictions(record)) == []
         assert run_trial(record.spec, proposals=record.proposals).to_line() == line
