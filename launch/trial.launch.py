@@ -12,6 +12,7 @@ from launch import LaunchDescription
 
 ARGUMENTS = {
     'script': ('', 'trial script to run; empty: wait for goals on run_trial'),
+    'participant': ('', 'code of the person who scopes; empty: as the script says'),
     'out_dir': ('trials', 'folder of trials.jsonl'),
     'bag_dir': ('', 'folder of a bag to record everything in; empty: no bag'),
     'namespace': ('', 'namespace of all nodes'),
@@ -43,7 +44,14 @@ def generate_launch_description() -> LaunchDescription:
     journal = [LaunchConfiguration('out_dir'), '/journal']
     orchestrator = node(
         'trial_orchestrator',
-        parameters=[{'script': text('script'), 'out_dir': text('out_dir'), 'wait_for': peers}],
+        parameters=[
+            {
+                'script': text('script'),
+                'participant': text('participant'),
+                'out_dir': text('out_dir'),
+                'wait_for': peers,
+            }
+        ],
     )
     return LaunchDescription(
         [
