@@ -121,13 +121,19 @@ def numbers_of(candidate: Candidate) -> list[str]:
     ]
 
 
+NO_ROWS = '-'
+"""For the rows of a region that is not the rows below a height."""
+
+
 def heights_of(candidate: Candidate, width: int, signs: Signs = palette.UNICODE) -> str:
     """The heights of a candidate's regions in at most ``width`` characters, the last left out.
 
     >>> heights_of(Candidate((1, 3, 8), 9, 9, None, SolveStatus.SOLVED), width=4)
     '1 3…'
+    >>> heights_of(Candidate((), 9, 9, None, SolveStatus.SOLVED), width=4)
+    '-'
     """
-    text = ' '.join(map(str, candidate.heights))
+    text = ' '.join(map(str, candidate.heights)) or NO_ROWS
     if len(text) <= width:
         return text
     return text[:width].rpartition(' ')[0] + signs.more
