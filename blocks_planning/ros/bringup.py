@@ -36,6 +36,7 @@ class BringupSpec:
         namespace: of all nodes, '' for none.
         domain: ROS domain; None for a free one.
         placing_s: how long placing a block takes [s].
+        markers: whether the tower is shown as markers, for RViz and Foxglove.
     """
 
     script: Path
@@ -44,6 +45,7 @@ class BringupSpec:
     namespace: str = ''
     domain: int | None = None
     placing_s: float = 0.0
+    markers: bool = False
 
     @property
     def records(self) -> Path:
@@ -63,6 +65,8 @@ class Bringup:
         self._names = [name for name in WAIT_FOR.default if isinstance(name, str)]
         if spec.bag is not None:
             self._names.append('bag_recorder')
+        if spec.markers:
+            self._names.append('marker_publisher')
         self._others = [self._process(name) for name in self._names]
         self._orchestrator = self._process('trial_orchestrator')
         self.watcher: Watcher | None = None
