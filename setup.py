@@ -7,7 +7,10 @@ from setuptools import find_packages, setup
 
 NAME = 'blocks_planning'
 SHARE = f'share/{NAME}'
-NODES = ('world', 'subgoal_selector', 'action_searcher', 'trial_orchestrator', 'bag_recorder')
+NODES = (
+    *('world', 'subgoal_selector', 'action_searcher', 'trial_orchestrator', 'bag_recorder'),
+    'marker_publisher',
+)
 
 
 def version() -> str:

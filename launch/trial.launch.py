@@ -16,6 +16,7 @@ ARGUMENTS = {
     'out_dir': ('trials', 'folder of trials.jsonl'),
     'bag_dir': ('', 'folder of a bag to record everything in; empty: no bag'),
     'namespace': ('', 'namespace of all nodes'),
+    'markers': ('false', 'true: show the towers to RViz and Foxglove'),
 }
 RESPAWNED = ('world', 'subgoal_selector', 'action_searcher')
 
@@ -65,6 +66,11 @@ def generate_launch_description() -> LaunchDescription:
                 'bag_recorder',
                 parameters=[{'bag_dir': text('bag_dir')}],
                 condition=IfCondition(has_bag),
+            ),
+            node(
+                'marker_publisher',
+                respawn=True,
+                condition=IfCondition(LaunchConfiguration('markers')),
             ),
             orchestrator,
             RegisterEventHandler(

@@ -30,6 +30,8 @@ Examples:
 """
 _PATH = click.Path(path_type=Path)
 _FRAMES_PER_S = 8
+_MOST_PICTURES = 16
+"""Of a script that has no more trials pictures are drawn unasked."""
 
 
 @click.command(epilog=_EXAMPLES)
@@ -46,6 +48,12 @@ _FRAMES_PER_S = 8
     help='Seconds that placing a block takes, to watch it.  [default: 0]',
 )
 @click.option('--participant', default='', help='Code of the person who scopes in this session.')
+@click.option('--markers', is_flag=True, help='Show the towers to RViz and Foxglove.')
+@click.option(
+    '--pictures/--no-pictures',
+    default=None,
+    help=f'Draw the first {_MOST_PICTURES} trials.  [default: if there are no more]',
+)
 def run(
     script: Path,
     out: Path,
@@ -54,18 +62,21 @@ def run(
     domain: int | None,
     pace: float,
     participant: str,
+    markers: bool,
+    pictures: bool | None,
 ) -> int:
     """Bring up the ROS graph and run the trials of a script through it.
 
     Records go to trials.jsonl in the folder --out; trials whose records are there already are not
-    run again. The exit code is 1 if a tower was not rebuilt perfectly.
+    run again. Pictures of trials go to the folder pictures in it. The exit code is 1 if a tower
+    was not rebuilt perfectly.
     """
     specs = read_script(script, participant)
     try:
         from blocks_planning.ros.bringup import Bringup, BringupSpec
     except ImportError as error:
         raise BlocksPlanningError(f'ROS 2 is not installed here: {error}') from None
-    spec = BringupSpec(script, out, bag, namespace, domain, pace, participant)
+    spec = BringupSpec(script, out, bag, namespace, domain, pace, participant, markers)
     records = RecordFile(spec.records)
     wanted = {trial.trial_id for trial in specs}
     done = len(wanted & records.finished)
@@ -74,18 +85,21 @@ def run(
     bringup = Bringup(spec)
     click.echo(f'To look into the graph: {bringup.look_in}', err=True)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    successes = 0
+    ended: list[TrialRecord] = []
     try:
         with progress:
             bringup.run(progress.on_tick)
             progress.on_tick(None)
     finally:
-        successes = _summarise(spec.records, wanted)
+        ended = _summarise(spec.records, wanted)
+    if pictures or (pictures is None and len(specs) <= _MOST_PICTURES):
+        _draw(ended, out / 'pictures')
+    successes = sum(record.status is TrialStatus.SUCCESS for record in ended)
     return int(successes < len(specs))
 
 
-def _summarise(path: Path, wanted: set[str]) -> int:
-    """Print what came of the wanted trials; return how many towers were rebuilt."""
+def _summarise(path: Path, wanted: set[str]) -> list[TrialRecord]:
+    """Print what came of the wanted trials; return their records."""
     from blocks_planning.view.tables import print_summaries
 
     records = read_records(path) if path.stat().st_size else []
@@ -93,7 +107,15 @@ def _summarise(path: Path, wanted: set[str]) -> int:
     if records:
         print_summaries(records)
         click.echo(f'Records: {path}')
-    return sum(record.status is TrialStatus.SUCCESS for record in records)
+    return records
+
+
+def _draw(records: list[TrialRecord], folder: Path) -> None:
+    """Draw the first trials, and say where."""
+    if records:
+        from blocks_planning.view.gallery import print_gallery, save_gallery
+
+        print_gallery(save_gallery(records, folder, _MOST_PICTURES))
 
 
 class _Progress:

@@ -27,7 +27,7 @@ from blocks_planning.ros.bagging.writer import BagWriter
 from blocks_planning.ros.graph import BAG_RECORDER
 from blocks_planning.ros.parameters import Parameter, declare
 from blocks_planning.ros.runtime import run
-from blocks_planning.ros.topics import Topic
+from blocks_planning.ros.topics import VIEW_TOPICS, Topic, ViewTopic
 
 BAG_DIR = Parameter('bag_dir', 'bag', 'Folder of the bag: a new one, or of a bag cut off.')
 FLUSH_PERIOD = Parameter(
@@ -56,7 +56,8 @@ class BagRecorder(Node):
         super().__init__(BAG_RECORDER.name, **options)
         values = declare(self, PARAMETERS)
         self._path = Path(values['bag_dir'])
-        topics = {topic: self.resolve_topic_name(topic.name) for topic in BAG_RECORDER.listens}
+        recorded: list[Topic | ViewTopic] = [*BAG_RECORDER.listens, *VIEW_TOPICS]
+        topics = {topic: self.resolve_topic_name(topic.name) for topic in recorded}
         self._writer = BagWriter(
             self._path,
             [recorded_topic(topic, name) for topic, name in topics.items()],
@@ -114,7 +115,7 @@ class BagRecorder(Node):
             )
 
 
-def recorded_topic(topic: Topic, name: str) -> RecordedTopic:
+def recorded_topic(topic: Topic | ViewTopic, name: str) -> RecordedTopic:
     """What a bag says of a topic."""
     package, ros_type = topic.ros_type.__module__.split('.')[0], topic.ros_type.__name__
     full_type = f'{package}/msg/{ros_type}'

@@ -37,6 +37,7 @@ class BringupSpec:
         domain: ROS domain; None for a free one.
         placing_s: how long placing a block takes [s].
         participant: code of the person who scopes, '' for what the script says.
+        markers: whether the tower is shown as markers, for RViz and Foxglove.
     """
 
     script: Path
@@ -46,6 +47,7 @@ class BringupSpec:
     domain: int | None = None
     placing_s: float = 0.0
     participant: str = ''
+    markers: bool = False
 
     @property
     def records(self) -> Path:
@@ -65,6 +67,8 @@ class Bringup:
         self._names = [name for name in WAIT_FOR.default if isinstance(name, str)]
         if spec.bag is not None:
             self._names.append('bag_recorder')
+        if spec.markers:
+            self._names.append('marker_publisher')
         self._others = [self._process(name) for name in self._names]
         self._orchestrator = self._process('trial_orchestrator')
         self.watcher: Watcher | None = None

@@ -44,5 +44,10 @@ def bag_recorder() -> None:
     _start('bag_recorder')
 
 
+def marker_publisher() -> None:
+    """The tower in space."""
+    _start('marker_publisher')
+
+
 if __name__ == '__main__':
     _start(sys.argv.pop(1))

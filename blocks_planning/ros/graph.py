@@ -7,6 +7,7 @@ from typing import NamedTuple
 from blocks_planning.ros.topics import (
     ACTION,
     ACTION_OUTCOME,
+    MARKERS,
     OUTCOME,
     PLAN,
     PROPOSAL,
@@ -17,15 +18,17 @@ from blocks_planning.ros.topics import (
     TOPICS,
     TRIAL,
     Topic,
+    ViewTopic,
 )
 
 
 class NodeTopics(NamedTuple):
-    """A node by its name, and its topics."""
+    """A node by its name, and its topics; ``views`` is what it says to viewers alone."""
 
     name: str
     listens: tuple[Topic, ...]
     says: tuple[Topic, ...]
+    views: tuple[ViewTopic, ...] = ()
 
 
 WORLD = NodeTopics('world', (TRIAL, ACTION, OUTCOME), (STATE, ACTION_OUTCOME))
@@ -41,6 +44,7 @@ ACTION_SEARCHER = NodeTopics(
 )
 TRIAL_ORCHESTRATOR = NodeTopics('trial_orchestrator', (STATE, SUBGOAL), (TRIAL, OUTCOME))
 BAG_RECORDER = NodeTopics('bag_recorder', TOPICS, ())
+MARKER_PUBLISHER = NodeTopics('marker_publisher', (TRIAL, STATE, SUBGOAL, OUTCOME), (), (MARKERS,))
 WATCHER = NodeTopics('watcher', (TRIAL, STATE, SUBGOAL, OUTCOME), ())
 
 GRAPH = {
@@ -51,6 +55,7 @@ GRAPH = {
         ACTION_SEARCHER,
         TRIAL_ORCHESTRATOR,
         BAG_RECORDER,
+        MARKER_PUBLISHER,
         WATCHER,
     )
 }

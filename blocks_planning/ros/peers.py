@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from rclpy.node import Node
 
 from blocks_planning.ros.graph import GRAPH
+from blocks_planning.ros.topics import Topic, ViewTopic
 
 
 def missing_peers(node: Node, names: Iterable[str]) -> list[str]:
@@ -29,12 +30,13 @@ def _is_complete(node: Node, name: str) -> bool:
     if topics is None:
         return True
     me = (name, _space(node))
+    said: list[Topic | ViewTopic] = [*topics.says, *topics.views]
     return all(
         me in _ends(node.get_subscriptions_info_by_topic(node.resolve_topic_name(topic.name)))
         for topic in topics.listens
     ) and all(
         me in _ends(node.get_publishers_info_by_topic(node.resolve_topic_name(topic.name)))
-        for topic in topics.says
+        for topic in said
     )
 
 

@@ -83,6 +83,24 @@ def costs_of(scene: Scene) -> str:
     )
 
 
+def heading_of(scene: Scene, width: int, signs: Signs = palette.UNICODE) -> list[str]:
+    """What stands above a picture: stimulus and status, strategy, search, progress, costs.
+
+    Args:
+        scene: what there is to see.
+        width: of the first line at most [characters].
+        signs: that can be shown.
+    """
+    spec, status = scene.spec, STATUS_WORDS[scene.status]
+    return [
+        f'{stimulus_of(spec, width - len(status), signs)}: {status}',
+        strategy_of(spec),
+        search_of(spec),
+        progress_of(scene),
+        costs_of(scene),
+    ]
+
+
 def outcome_of(scene: Scene, signs: Signs = palette.UNICODE) -> str:
     """One line that says how a trial ended."""
     name = signs.shown(scene.spec.stimulus)

@@ -40,6 +40,7 @@ from blocks_planning.ros.graph import (
     NodeTopics,
 )
 from blocks_planning.ros.journal import Journal
+from blocks_planning.ros.marker_publisher import MarkerPublisher
 from blocks_planning.ros.topics import (
     ACTION,
     OUTCOME,
@@ -513,6 +514,7 @@ def make(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, graph: Graph) -> Calla
         **dict(zip(PART_IDS, (make_node for _, make_node in PARTS), strict=True)),
         'trial_orchestrator': lambda **options: TrialOrchestrator(threading.Event(), **options),
         'bag_recorder': BagRecorder,
+        'marker_publisher': MarkerPublisher,
     }
 
     def call(name: str, **parameters: Any) -> Any:
@@ -593,6 +595,8 @@ def test_parameters_of_a_wrong_type_or_value_are_refused(
         ('action_searcher', 'workers:=many', 'parameter workers must be'),
         ('trial_orchestrator', 'script:=nowhere.yaml', 'nowhere.yaml: cannot be read'),
         ('bag_recorder', 'flush_period_s:=1e9', 'parameter flush_period_s must be'),
+        ('marker_publisher', 'cell_size:=0.0', 'parameter cell_size must be'),
+        ('marker_publisher', "frame_id:=''", 'parameter frame_id must be a name'),
     ],
 )
 def test_process_with_bad_parameters_ends_with_one_line(
@@ -641,7 +645,10 @@ def test_docstring_names_topics_and_parameters(name: str, make: Callable[..., An
         assert set(topics.listens) == set(TOPICS)
     else:
         assert named(rows['listens']) == {topic.name: topic.latched for topic in topics.listens}
-    assert named(rows.get('says', '')) == {topic.name: topic.latched for topic in topics.says}
+    assert named(rows.get('says', '')) == {
+        **{topic.name: topic.latched for topic in topics.says},
+        **{topic.name: True for topic in topics.views},
+    }
     parameters = re.findall(r'(?:^|; )`(\w+)`', rows['parameters'])
     assert parameters == list(own_parameters(make(name)))
     assert ('action' in rows) == (name == 'trial_orchestrator')
