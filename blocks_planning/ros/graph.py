@@ -39,7 +39,9 @@ ACTION_SEARCHER = NodeTopics(
     (TRIAL, STATE, SEARCH_REQUEST, SUBGOAL, OUTCOME),
     (SEARCH_RESULT, PLAN, ACTION),
 )
-TRIAL_ORCHESTRATOR = NodeTopics('trial_orchestrator', (STATE, SUBGOAL), (TRIAL, OUTCOME))
+TRIAL_ORCHESTRATOR = NodeTopics(
+    'trial_orchestrator', (STATE, SUBGOAL, ACTION_OUTCOME), (TRIAL, OUTCOME)
+)
 BAG_RECORDER = NodeTopics('bag_recorder', TOPICS, ())
 WATCHER = NodeTopics('watcher', (TRIAL, STATE, SUBGOAL, OUTCOME), ())
 

@@ -28,6 +28,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from blocks_planning.errors import BlocksPlanningError
 from blocks_planning.ros.processes import PARENT_VARIABLE
+from blocks_planning.ros.single import claim_name
 
 EXIT_BOUND_S = float(os.environ.get('BLOCKS_PLANNING_EXIT_BOUND_S', '0.9'))
 _SPIN_S = 0.1
@@ -58,6 +59,7 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         signal.signal(number, lambda received, _: _on_signal(stop, received))
     try:
         node = make_node(stop)
+        claim = claim_name(node.context.get_domain_id(), node.get_fully_qualified_name())
     except BlocksPlanningError as error:
         sys.stderr.write(f'Error: {error}\n')
         sys.stderr.flush()
@@ -82,6 +84,8 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         executor.shutdown(timeout_sec=_SPIN_S)
         node.destroy_node()
         rclpy.utilities.try_shutdown()
+    if claim is not None:
+        claim.close()
     for failure in failures:
         traceback.print_exception(failure)
     _leave(CRASHED if failures else getattr(node, 'exit_code', 0))

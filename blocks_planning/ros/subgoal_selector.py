@@ -17,9 +17,27 @@ from blocks_planning.ros.runtime import run
 from blocks_planning.trials import selector
 
 
+class SubgoalSelector(PartNode):
+    """The selector."""
+
+    def __init__(self, **options: Any) -> None:
+        """See :class:`PartNode`."""
+        super().__init__(SUBGOAL_SELECTOR, selector, **options)
+
+    def load(self) -> dict[str, object]:
+        """See :class:`PartNode`; of the questions that were asked in the trial."""
+        waiting = [query for query in self.memory.asked if query not in self.memory.known]
+        chosen = self.memory.chosen
+        return {
+            'questions_waiting': len(waiting),
+            'questions_answered': len(self.memory.known),
+            'decisions': 0 if chosen is None else len(chosen.decisions),
+        }
+
+
 def make_node(**options: Any) -> PartNode:
     """The node, not yet spinning."""
-    return PartNode(SUBGOAL_SELECTOR, selector, **options)
+    return SubgoalSelector(**options)
 
 
 def main() -> None:
