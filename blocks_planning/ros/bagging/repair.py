@@ -67,6 +67,15 @@ def is_finished(bag: Path) -> bool:
     return all(read_summary(file) is not None for file in files)
 
 
+def file_begins(bag: Path) -> list[int]:
+    """When the first message of each MCAP file of a bag came [ns since 1970], in order.
+
+    A single file, or one that can't be read, counts for nothing.
+    """
+    summaries = [read_summary(path) for path in _files_of(bag)] if bag.is_dir() else []
+    return sorted(found.start_ns for found in summaries if found is not None and found.messages)
+
+
 def repair(bag: Path) -> list[Repair]:
     """Make a bag whole, if it is not: a directory, or a single MCAP file.
 
