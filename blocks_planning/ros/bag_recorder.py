@@ -27,7 +27,7 @@ from blocks_planning.ros.bagging.writer import BagWriter
 from blocks_planning.ros.diagnostics import Diagnostics, Health
 from blocks_planning.ros.graph import BAG_RECORDER
 from blocks_planning.ros.parameters import Parameter, declare
-from blocks_planning.ros.peers import peers_of
+from blocks_planning.ros.peers import Peers
 from blocks_planning.ros.runtime import run
 from blocks_planning.ros.topics import Topic
 
@@ -77,6 +77,7 @@ class BagRecorder(Node):
             )
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(values['flush_period_s'], self._flush, clock=steady)
+        self._peers = Peers(self)
         self._diagnostics = Diagnostics(self, self.health)
 
     @property
@@ -87,8 +88,8 @@ class BagRecorder(Node):
     def health(self) -> Health:
         """How the recorder is."""
         counts = {'messages_recorded': self.count, 'messages_lost': self._writer.lost}
-        peers = peers_of(self, BAG_RECORDER)
-        return Health('recording', '', *peers, failure=self._failure, values=counts)
+        around = self._peers.around(BAG_RECORDER)
+        return Health('recording', '', *around, failure=self._failure, values=counts)
 
     def _record(self, topic: str, data: bytes, info: dict[str, int]) -> None:
         received_ns = info['received_timestamp'] or time.time_ns()

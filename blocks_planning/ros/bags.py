@@ -66,7 +66,8 @@ class RecordedTrial:
         record: made from its states and subgoals. Its status is building if they do not lead to
             an end.
         outcome: what was said at its end; None if that is not in the bag.
-        spans_files: whether it was under way where one file ends and the next begins.
+        spans_files: whether it was under way where one file ends and the next begins, or before
+            the recorder of the next one had found all who speak.
     """
 
     trial_id: str
@@ -95,7 +96,7 @@ class RecordedTrial:
             found, said = self.record.placements, self.outcome.placements
             if said[: len(found)] != found:
                 yield 'the outcome says other placements than the messages that led there'
-            yield from verify.contradictions(replace(self.record, status=TrialStatus.CANCELLED))
+            yield from verify.contradictions(_begun(self.record))
             return
         if self.outcome is not None and self.record.status is TrialStatus.BUILDING:
             status = self.outcome.status.value
@@ -141,6 +142,22 @@ class _Heard:
         return RecordedTrial(trial_id, record, outcome, self.spans_files)
 
 
+def _begun(record: TrialRecord) -> TrialRecord:
+    """As much of a record as its placements lead through, as if it had been cancelled there."""
+    decisions: list[DecisionRecord] = []
+    for entry in record.decisions:
+        left, executed = record.blocks - entry.placed, 0
+        if left < 0:
+            break
+        for subgoal in entry.decision.subgoals[: entry.executed]:
+            executed += 1
+            left -= subgoal.execute
+            if left <= 0:
+                break
+        decisions.append(replace(entry, executed=executed))
+    return replace(record, status=TrialStatus.CANCELLED, decisions=tuple(decisions))
+
+
 def _cancelled(memory: scribe.Memory, outcome: Outcome) -> TrialRecord:
     """The record as it was when the trial was cancelled: others may have gone on a little."""
     record = memory.record()
@@ -177,15 +194,14 @@ def trials_of(bag: Path, refuse: Callable[[str], None] | None = None) -> Iterato
     inbox = Inbox()
     outcomes: set[str] = set()
 
-    resumed: set[int] = set()
+    said: dict[int, set[str]] = {}
 
     def hear(kind: str, message: Any, file: int) -> None:
         trial_id = message.trial_id
-        if kind == _OUTCOME:
-            # The first one of a recorder that was started again may be of an earlier trial.
-            if file == 0 or file in resumed:
-                outcomes.add(trial_id)
-            resumed.add(file)
+        is_first = kind not in said.setdefault(file, set())
+        said[file].add(kind)
+        if kind == _OUTCOME and not (file and is_first):  # that may be of an earlier trial
+            outcomes.add(trial_id)
         if trial_id in finished:
             return
         heard = trials.get(trial_id)
@@ -194,6 +210,8 @@ def trials_of(bag: Path, refuse: Callable[[str], None] | None = None) -> Iterato
         try:
             if kind == _TRIAL:
                 _announce(trials, started_from_ros(message), file)
+                if file and len(said[file]) < len(_KINDS):
+                    trials[trial_id].spans_files = True
                 for held in inbox.take(trial_id):
                     hear(*held)
             elif heard is None:

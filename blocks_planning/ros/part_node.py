@@ -16,7 +16,7 @@ from blocks_planning.ros.diagnostics import Diagnostics, Health
 from blocks_planning.ros.graph import NodeTopics
 from blocks_planning.ros.inbox import Inbox
 from blocks_planning.ros.parameters import Parameter, declare
-from blocks_planning.ros.peers import peers_of
+from blocks_planning.ros.peers import Peers
 from blocks_planning.ros.topics import TRIAL, Topic
 from blocks_planning.trials.messages import Message, Remind, TrialStarted
 
@@ -82,6 +82,7 @@ class PartNode(Node):
             )
         self.create_timer(self.values['remind_period_s'], self._remind, clock=self.steady)
         self.topics = topics
+        self.peers = Peers(self)
         self._diagnostics = Diagnostics(self, self.health)
 
     def take(self, message: Message) -> None:
@@ -110,7 +111,7 @@ class PartNode(Node):
         return Health(
             'building' if self.is_busy else 'idle',
             self.trial.trial_id if self.is_busy and self.trial is not None else '',
-            *peers_of(self, self.topics),
+            *self.peers.around(self.topics),
             values={'messages_refused': self.refused, **self.load()},
         )
 

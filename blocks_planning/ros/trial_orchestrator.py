@@ -36,7 +36,7 @@ from blocks_planning.ros.diagnostics import Health
 from blocks_planning.ros.graph import TRIAL_ORCHESTRATOR
 from blocks_planning.ros.parameters import Parameter
 from blocks_planning.ros.part_node import PartNode
-from blocks_planning.ros.peers import Attendance, missing_peers
+from blocks_planning.ros.peers import Attendance
 from blocks_planning.ros.runtime import run
 from blocks_planning.ros.topics import OUTCOME
 from blocks_planning.trials import scribe
@@ -169,7 +169,7 @@ class TrialOrchestrator(PartNode):
     def _look(self) -> None:
         """Begin the script when everybody is there; end what has waited too long."""
         bound_s, now_s = self.values['peer_timeout_s'], self._now_s()
-        gone = self._attendance.note(missing_peers(self, self.values['wait_for']), now_s)
+        gone = self._attendance.note(self.peers.missing(self.values['wait_for']), now_s)
         overdue = self._attendance.overdue(now_s, bound_s, self._began_s)
         if self._first_looks.is_canceled():
             if gone:

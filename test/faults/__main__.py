@@ -16,7 +16,7 @@ import click
 @click.option('--kills', default=200, show_default=True, type=click.IntRange(1))
 @click.option('--trials', default=60, show_default=True, type=click.IntRange(1), help='At least.')
 @click.option('--seed', default=0, show_default=True)
-@click.option('--pace', default=0.1, show_default=True, help='How long a placement takes [s].')
+@click.option('--pace', default=0.05, show_default=True, help='How long a placement takes [s].')
 @click.option('--out', type=click.Path(path_type=Path), help='Folder to keep everything in.')
 @click.option(
     '--json', 'json_path', type=click.Path(path_type=Path), help='Write the report there.'

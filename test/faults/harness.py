@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from graphs import local_lines, record_lines, write_script
+from graphs import COMMAND, local_lines, record_lines, write_script
 from peers import Graph
 
 from blocks_planning.ros import bags
@@ -21,7 +21,7 @@ from faults.subject import Observer, Subject, send
 RECOVERY_BOUND_S = 60.0
 STOP_BOUND_S = 6.0
 SECOND_RUN_BOUND_S = 60.0
-_PHASE_BOUND_S = 5.0
+_PHASE_BOUND_S = 2.0
 _FILE_LOOK_S = 0.03
 _TRIGGERS = {'idle': 'outcome', 'searching': 'search/request', 'placing': 'action'}
 _STRATEGIES: list[dict[str, Any]] = [
@@ -262,21 +262,19 @@ class Harness:
             self._complain(f'a traceback in {subject.console}')
         expected = local_lines(script)
         self.report.compare(record_lines(out), expected)
-        for complaint in verify_bag(subject.bag):
-            self._complain(f'{subject.bag}: {complaint}')
+        for bag in subject.bags:
+            for complaint in verify_bag(bag):
+                self._complain(f'{bag}: {complaint}')
         begun = time.monotonic()
         again = subprocess.run(
-            [*self._again(script, out)], capture_output=True, text=True, timeout=SECOND_RUN_BOUND_S
+            [*COMMAND, str(script), '--out', str(out)],
+            capture_output=True,
+            text=True,
+            timeout=SECOND_RUN_BOUND_S,
         )
         self.report.restarts_s.append(time.monotonic() - begun)
         if again.returncode not in (0, 1) or record_lines(out) != expected:
             self._complain(f'the second run ended with {again.returncode}: {again.stderr}')
-
-    @staticmethod
-    def _again(script: Path, out: Path) -> list[str]:
-        from graphs import COMMAND
-
-        return [*COMMAND, str(script), '--out', str(out)]
 
     def _complain(self, sentence: str) -> None:
         self.report.complaints.append(sentence)

@@ -63,14 +63,16 @@ def make_plan(seed: int, kills: int) -> Iterator[Fault]:
         node, phase = pairs.pop(0)
         kind = 'kill'
         if node != BRINGUP and phase != 'starting':
-            kind = chance.choices(('kill', 'late', 'pause', 'copy'), (17, 1, 2, 0.6))[0]
+            kind = chance.choices(('kill', 'late', 'pause', 'copy'), (17, 1, 1.2, 0.5))[0]
         fault = Fault(
             kind,
             node,
             phase,
             delay_s=chance.choice((0.0, 0.002, chance.uniform(0.0, 0.02))),
-            hold_s=chance.choice((0.3, 2.0, 7.0)) if kind == 'pause' else chance.uniform(0.5, 4.0),
-            at_once=chance.random() < 0.25,
+            hold_s=chance.choice((0.3, 0.3, 2.0, 7.0))
+            if kind == 'pause'
+            else chance.uniform(0.5, 3.0),
+            at_once=chance.random() < 0.4,
         )
         if phase == 'any':
             fault = fault._replace(delay_s=chance.uniform(0.0, 0.5))

@@ -50,21 +50,25 @@ class Subject:
 
     def __init__(self, script: Path, out: Path, namespace: str, pace_s: float) -> None:
         self.out = out
-        self.bag = out / 'bag'
+        self.bags: list[Path] = []
         self.records = out / 'trials.jsonl'
         self.console = out.with_suffix('.console')
         self._command = [
-            *(*graphs.COMMAND, str(script), '--out', str(out), '--bag', str(self.bag)),
+            *(*graphs.COMMAND, str(script), '--out', str(out)),
             *('--pace', str(pace_s), '--namespace', namespace, '--domain', str(DOMAIN.number)),
         ]
         self._process: subprocess.Popen[bytes] | None = None
         self._copies: list[subprocess.Popen[str]] = []
 
     def start(self) -> None:
-        """Bring the graph up."""
+        """Bring the graph up, with another bag each time: a finished one is not gone on with."""
+        self.bags.append(self.out / f'bag{len(self.bags)}')
         with self.console.open('ab') as console:
             self._process = subprocess.Popen(
-                self._command, stdout=console, stderr=console, start_new_session=True
+                [*self._command, '--bag', str(self.bags[-1])],
+                stdout=console,
+                stderr=console,
+                start_new_session=True,
             )
 
     @property
@@ -121,8 +125,8 @@ class Subject:
             return 0
 
     def bag_size(self) -> int:
-        """Of all files of the bag [bytes]."""
-        return sum(path.stat().st_size for path in self.bag.glob('*.mcap'))
+        """Of all files of the last bag [bytes]."""
+        return sum(path.stat().st_size for path in self.bags[-1].glob('*.mcap'))
 
     def left_over(self, within_s: float) -> list[str]:
         """The processes that were started by it and have not ended in some time."""
