@@ -413,7 +413,7 @@ def test_process_that_dies_at_once_is_given_up(dying: Dying) -> None:
     pauses = []
     for _ in range(MOST_DEATHS):
         dying.code, died = -9, dying.now
-        while dying.code is not None:
+        while dying.poll() is not None:
             assert watch(process, dying, 0.04)
         pauses.append(dying.now - died)
     dying.code = -9
