@@ -6,7 +6,6 @@ One status per node, by its fully qualified name; a value is a text. All nodes s
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
@@ -16,8 +15,6 @@ from rclpy.node import Node
 
 TOPIC = '/diagnostics'
 PERIOD_S = 1.0
-STOPPED_S = 3.0
-"""Who says nothing for so long was stopped, or the machine was."""
 _DEPTH = 10
 
 
@@ -75,27 +72,13 @@ class Diagnostics:
             look: says how it is.
         """
         self._node, self._look = node, look
-        self._said = time.monotonic()
         self._outlet = node.create_publisher(DiagnosticArray, TOPIC, _DEPTH)
         node.create_timer(PERIOD_S, self.say, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def say(self) -> None:
         """Publish how the node is now."""
-        now = time.monotonic()
-        if now - self._said > STOPPED_S:
-            self._node.get_logger().warning(f'stood still for {now - self._said:.1f} s')
-            self._announce()
-        self._said = now
         message = DiagnosticArray(
             status=[self._look().status(self._node.get_fully_qualified_name())]
         )
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._outlet.publish(message)
-
-    def _announce(self) -> None:
-        """Tell all others the node's name again.
-
-        They drop who is silent for longer than its lease, and the middleware tells them what
-        belongs to the node only when that changes.
-        """
-        self._node.destroy_publisher(self._node.create_publisher(DiagnosticArray, TOPIC, _DEPTH))

@@ -33,7 +33,7 @@ from blocks_planning.ros.conversions.board import state_to_ros
 from blocks_planning.ros.conversions.decisions import subgoal_to_ros
 from blocks_planning.ros.conversions.trial import outcome_to_ros, spec_from_ros
 from blocks_planning.ros.diagnostics import Health
-from blocks_planning.ros.graph import TRIAL_ORCHESTRATOR
+from blocks_planning.ros.graph import TRIAL_ORCHESTRATOR, WATCHER
 from blocks_planning.ros.parameters import Parameter
 from blocks_planning.ros.part_node import PartNode
 from blocks_planning.ros.peers import Attendance
@@ -169,7 +169,10 @@ class TrialOrchestrator(PartNode):
     def _look(self) -> None:
         """Begin the script when everybody is there; end what has waited too long."""
         bound_s, now_s = self.values['peer_timeout_s'], self._now_s()
-        gone = self._attendance.note(self.peers.missing(self.values['wait_for']), now_s)
+        wanted = self.values['wait_for']
+        if self._first_looks.is_canceled():  # a trial does not need who only looks
+            wanted = [name for name in wanted if name != WATCHER.name]
+        gone = self._attendance.note(self.peers.missing(wanted), now_s)
         overdue = self._attendance.overdue(now_s, bound_s, self._began_s)
         if self._first_looks.is_canceled():
             if gone:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import signal
 import subprocess
 import sys
 import threading
@@ -32,14 +34,16 @@ from blocks_planning.ros.graph import GRAPH, TRIAL_ORCHESTRATOR, WORLD
 from blocks_planning.ros.journal import Journal
 from blocks_planning.ros.peers import Attendance
 from blocks_planning.ros.processes import MOST_DEATHS, STABLE_S, NodeProcess
+from blocks_planning.ros.runtime import stood_still
 from blocks_planning.ros.single import claim_name
-from blocks_planning.ros.topics import OUTCOME
+from blocks_planning.ros.topics import OUTCOME, SEARCH_REQUEST, STATE, TRIAL
 from blocks_planning.ros.trial_orchestrator import TrialOrchestrator
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
     PlaceBlock,
     PlacementOutcome,
+    SearchRequest,
     SubgoalChosen,
     TrialStarted,
     WorldState,
@@ -370,7 +374,39 @@ def test_second_process_of_a_node_is_refused(graph: Graph) -> None:
             first.terminate()
 
 
-# Processes that die
+# Processes that are stopped, and that die
+
+
+@pytest.mark.parametrize(
+    ('passed_s', 'worked_s', 'stopped'),
+    [(0.5, 0.0, False), (4.4, 0.0, False), (4.6, 0.0, True), (60.0, 0.3, True), (6.0, 5.9, False)],
+)
+def test_who_is_busy_did_not_stand_still(passed_s: float, worked_s: float, stopped: bool) -> None:
+    assert stood_still(passed_s, worked_s) == stopped
+
+
+def test_node_that_was_stopped_is_there_again(graph: Graph, tmp_path: Path) -> None:
+    """After all others had taken it for dead; and it says what holds."""
+    peer = graph.add(Peer, SPEC, (TRIAL, STATE), (SEARCH_REQUEST,))
+    command = [sys.executable, '-m', NODES, 'subgoal_selector', '--ros-args']
+    command += ['-r', f'__ns:={graph.namespace}']
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            graph.spin_until(lambda: peer.count_publishers('subgoal'))
+            process.send_signal(signal.SIGSTOP)
+            graph.spin_until(lambda: not peer.count_publishers('subgoal'))
+            process.send_signal(signal.SIGCONT)
+            peer.say(HEARD[0])
+            peer.say(next(m for m in HEARD if isinstance(m, WorldState)))
+            asked = len(
+                {m.query for m in HEARD if isinstance(m, SearchRequest) and not m.query.built}
+            )
+            graph.spin_until(lambda: len({m.query for m in peer.heard}) == asked)
+            assert process.poll() is None
+        finally:
+            process.terminate()
+        assert process.stderr is not None
+        assert re.search(r'stood still for \d+\.\d s, begins anew', process.stderr.read())
 
 
 class Dying:
