@@ -22,6 +22,7 @@ from peers import Bench, Graph, Peer
 from rclpy.action.client import ActionClient, GoalStatus
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from source_imports import ROOT
 
 from blocks_planning.board.blocks import Placed
 from blocks_planning.errors import LimitExceeded
@@ -111,6 +112,17 @@ def test_health_says_what_is_wrong_first() -> None:
     assert (failing.level, failing.message) == (DiagnosticStatus.ERROR, 'the disk is full')
 
 
+def told_keys(name: str) -> set[str]:
+    """The keys that the page about the graph tells of a node."""
+    page = (ROOT / 'docs' / 'ros.md').read_text(encoding='utf-8')
+    section = page.split('## Diagnostics')[1].split('\n## ')[0]
+    found: set[str] = set()
+    for keys, of in re.findall(r'^\| (`.*?) \| (.*?) \| .* \|$', section, re.MULTILINE):
+        is_told = of.startswith('all') != (f'`{name}`' in of)
+        found |= set(re.findall(r'`(\w+)`', keys)) if is_told else set()
+    return found
+
+
 def test_every_node_says_how_it_is(graph: Graph, tmp_path: Path) -> None:
     listener = graph.add(Listener)
     parameters = [Parameter('bag_dir', value=str(tmp_path / 'bag'))]
@@ -140,6 +152,8 @@ def test_every_node_says_how_it_is(graph: Graph, tmp_path: Path) -> None:
         'bag_recorder'
     }
 
+    for name, said in last.items():
+        assert set(said) == told_keys(name)
     node = nodes['trial_orchestrator']
     node.start_trial('a', SPEC)
     graph.spin_until(lambda: listener.outcomes)
