@@ -82,7 +82,7 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         daemon=True,
     )
     spinning.start()
-    _wait(stop, began)
+    _wait(stop, began, node.get_fully_qualified_name())
     _arm_exit()
     spinning.join(EXIT_BOUND_S / 2)  # a callback that is still busy is not torn down under
     if not spinning.is_alive():
@@ -116,7 +116,7 @@ def _leave(code: int) -> NoReturn:
     os._exit(code)
 
 
-def _wait(stop: threading.Event, looked: tuple[float, float]) -> None:
+def _wait(stop: threading.Event, looked: tuple[float, float], name: str) -> None:
     """Wait for the end; it also comes when the bring-up that started this process is gone."""
     parent = os.environ.get(PARENT_VARIABLE)
     while not stop.wait(_LOOK_FOR_PARENT_S):
@@ -125,7 +125,8 @@ def _wait(stop: threading.Event, looked: tuple[float, float]) -> None:
         before, looked = looked, _look_at_clocks()
         passed_s, worked_s = looked[0] - before[0], looked[1] - before[1]
         if stood_still(passed_s, worked_s):
-            _begin_anew(passed_s)
+            sys.stderr.write(f'{name} stood still for {passed_s:.1f} s, and begins anew\n')
+            _begin_anew()
 
 
 def _look_at_clocks() -> tuple[float, float]:
@@ -143,9 +144,8 @@ def stood_still(passed_s: float, worked_s: float) -> bool:
     return passed_s > STOOD_STILL_S and worked_s < _MOST_WORK * passed_s
 
 
-def _begin_anew(passed_s: float) -> NoReturn:
+def _begin_anew() -> NoReturn:
     """Be the same program again, in the same process, as if it had been killed and started."""
-    sys.stderr.write(f'{Path(sys.argv[0]).stem}: stood still for {passed_s:.1f} s, begins anew\n')
     sys.stderr.flush()
     for name in os.listdir('/proc/self/fd'):  # noqa: PTH208  numbers, not paths
         if int(name) > 2:  # sockets of the middleware would stay open

@@ -30,7 +30,7 @@ def main(
     folder = out or Path(tempfile.mkdtemp(prefix='faults-'))
     harness = Harness(folder.resolve(), seed, kills, trials, pace)
     try:
-        report = harness.run()
+        report = harness.run(say=lambda text: click.echo(text, err=True))
     finally:
         harness.close()
     click.echo('\n'.join(report.lines()))

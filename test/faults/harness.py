@@ -63,8 +63,13 @@ class Harness:
         self._observer = self._graph.add(Observer)
         self._subject: Subject
 
-    def run(self, per_script: int = 20) -> Report:
-        """Run scripts of so many trials until all kills are done and there were enough trials."""
+    def run(self, per_script: int = 20, say: Callable[[str], None] = lambda _: None) -> Report:
+        """Run scripts of so many trials until all kills are done and there were enough trials.
+
+        Args:
+            per_script: number of trials of a script.
+            say: is told how far it is.
+        """
         begun, number = time.monotonic(), 0
         while (
             self._next is not None or self.report.trials < self._trials
@@ -73,6 +78,10 @@ class Harness:
             folder = self._folder / f'script{number}'
             folder.mkdir(parents=True)
             self._run_script(self._script(folder, per_script), folder / 'out')
+            say(
+                f'script {number}: {self.report.trials} trials, {self.report.kills.total()} kills, '
+                f'{time.monotonic() - begun:.0f} s'
+            )
         self.report.seconds = time.monotonic() - begun
         return self.report
 

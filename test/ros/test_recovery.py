@@ -420,7 +420,7 @@ def test_node_that_was_stopped_is_there_again(graph: Graph, tmp_path: Path) -> N
         finally:
             process.terminate()
         assert process.stderr is not None
-        assert re.search(r'stood still for \d+\.\d s, begins anew', process.stderr.read())
+        assert re.search(r'stood still for \d+\.\d s, and begins anew', process.stderr.read())
 
 
 class Dying:
