@@ -289,7 +289,8 @@ def _messages_of(bag: Path) -> Iterator[tuple[str, Any, int]]:
 
 
 def _read(bag: Path) -> Iterator[tuple[str, Any, int]]:
-    begins_ns = file_begins(bag)
+    begins = file_begins(bag)
+    times_ns = [begin.time_ns for begin in begins]
     with AnyReader([bag]) as reader:
         wanted = {
             connection.msgtype: connection.msgtype.removeprefix(_PACKAGE)
@@ -300,5 +301,6 @@ def _read(bag: Path) -> Iterator[tuple[str, Any, int]]:
             return
         for connection, received_ns, data in reader.messages(connections):
             message = reader.deserialize(data, connection.msgtype)
-            file = max(0, bisect_right(begins_ns, received_ns) - 1)
+            place = bisect_right(times_ns, received_ns) - 1
+            file = begins[place].number if place >= 0 else 0
             yield wanted[connection.msgtype], message, file
