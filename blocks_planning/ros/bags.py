@@ -109,6 +109,8 @@ class RecordedTrial:
                     yield f'the outcome says {name} {_show(said)}, the messages {_show(found)}'
         if self.is_over:
             yield from verify.contradictions(self.record)
+        elif self.spans_files:
+            yield from verify.contradictions(_begun(self.record))
         else:  # as if it had been cancelled where the bag ends
             yield from verify.contradictions(replace(self.record, status=TrialStatus.CANCELLED))
 
@@ -143,11 +145,12 @@ class _Heard:
 
 
 def _begun(record: TrialRecord) -> TrialRecord:
-    """As much of a record as its placements lead through, as if it had been cancelled there."""
+    """As much of a record as both placements and decisions are there of, as if cancelled there."""
     decisions: list[DecisionRecord] = []
+    led = 0
     for entry in record.decisions:
         left, executed = record.blocks - entry.placed, 0
-        if left < 0:
+        if left < 0 or not entry.decision.subgoals:
             break
         for subgoal in entry.decision.subgoals[: entry.executed]:
             executed += 1
@@ -155,7 +158,13 @@ def _begun(record: TrialRecord) -> TrialRecord:
             if left <= 0:
                 break
         decisions.append(replace(entry, executed=executed))
-    return replace(record, status=TrialStatus.CANCELLED, decisions=tuple(decisions))
+        led = record.blocks - max(left, 0)
+    return replace(
+        record,
+        status=TrialStatus.CANCELLED,
+        placements=record.placements[:led],
+        decisions=tuple(decisions),
+    )
 
 
 def _cancelled(memory: scribe.Memory, outcome: Outcome) -> TrialRecord:
@@ -200,7 +209,8 @@ def trials_of(bag: Path, refuse: Callable[[str], None] | None = None) -> Iterato
         trial_id = message.trial_id
         is_first = kind not in said.setdefault(file, set())
         said[file].add(kind)
-        if kind == _OUTCOME and not (file and is_first):  # that may be of an earlier trial
+        may_be_earlier = file and (is_first or _TRIAL not in said[file])
+        if kind == _OUTCOME and not may_be_earlier:
             outcomes.add(trial_id)
         if trial_id in finished:
             return

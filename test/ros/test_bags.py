@@ -674,13 +674,18 @@ def test_reading_needs_no_middleware(bag: Path) -> None:
 def with_absence(path: Path, said: list[Said], gone: int, back: int, seed: int) -> Path:
     """A bag whose recorder was killed before a message, and was there again before another.
 
-    It then hears what is latched, from one node after the other.
+    It then finds one topic after the other, and hears what is latched there.
     """
-    latched = {one.topic: one for one in said[:back] if one.topic.latched}
-    again = list(latched.values())
-    random.Random(seed).shuffle(again)
+    chance = random.Random(seed)
+    found = {topic: back + chance.randrange(30) * (seed % 3) for topic in TOPICS}
+    again = []
+    for place, one in enumerate(said[back:], start=back):
+        for topic in (topic for topic in TOPICS if found[topic] == place and topic.latched):
+            again += [earlier for earlier in said[:place] if earlier.topic is topic][-1:]
+        if place >= found[one.topic]:
+            again.append(one)
     time_ns = START_NS
-    for part in (said[:gone], [*again, *said[back:]]):
+    for part in (said[:gone], again):
         writer = open_bag(path)
         for one in part:
             time_ns += 1_000_000
@@ -691,7 +696,7 @@ def with_absence(path: Path, said: list[Said], gone: int, back: int, seed: int) 
     return path
 
 
-@pytest.mark.parametrize('seed', range(12))
+@pytest.mark.parametrize('seed', range(16))
 def test_absence_of_the_recorder_is_no_contradiction(
     seed: int, said: list[Said], trials: list[tuple[TrialRecord, list[Said]]], tmp_path: Path
 ) -> None:
@@ -707,7 +712,7 @@ def test_absence_of_the_recorder_is_no_contradiction(
     ended = {one.record.to_line() for one in found if one.is_over}
     at = 0
     for record, messages in trials:
-        if at + len(messages) <= gone or at >= back:
+        if at + len(messages) <= gone or at >= back + 60:
             assert record.to_line() in ended
         at += len(messages)
 

@@ -80,7 +80,7 @@ def file_begins(bag: Path) -> list[FileBegin]:
     The numbers are those of the names: files without messages, and those that were put aside,
     count. A single file counts for nothing.
     """
-    found = []
+    found: list[FileBegin] = []
     for path in _files_of(bag) if bag.is_dir() else []:
         summary = read_summary(path)
         number = path.stem.rpartition('_')[2]
