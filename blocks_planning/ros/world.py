@@ -71,9 +71,11 @@ class World(PartNode):
                 except RecordError as error:
                     self.memory = before
                     return self._failure(message, str(error))
-            case PlaceBlock() if self._lost and message.sequence > self.memory.state.sequence:
-                return self._failure(message, self._lost)
+            case PlaceBlock() if self._lost and before.state is not None:
+                if message.sequence > before.state.sequence:
+                    return self._failure(message, self._lost)
             case TrialEnded():
+                self._lost = ''
                 self._journal.end()
         return said
 

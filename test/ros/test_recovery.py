@@ -290,6 +290,10 @@ def test_journal_that_contradicts_the_task_is_set_aside(
     assert failed.reason.endswith(f'it was set aside as {aside.name}')
     on.tell(placing(0))
     assert on.hear(2, WorldState)[-1].placements == RECORD.placements[:1]
+    on.peer.outlets[OUTCOME].publish(OUTCOME.to_ros(SPEC.trial_id, RECORD))
+    graph.spin_until(lambda: not on.node.is_busy)
+    on.tell(placing(2))
+    assert len(on.peer.only(PlacementOutcome)) == 2
 
 
 def test_world_with_its_journal_does_not_mind_what_is_to_come(
