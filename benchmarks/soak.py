@@ -28,15 +28,14 @@ _STALL_S = 120.0
 @click.command()
 @click.option('--trials', default=20_000, show_default=True, type=click.IntRange(160))
 @click.option('--out', default='benchmarks/soak.json', type=click.Path(path_type=Path))
-@click.option('--bag', is_flag=True, help='With the recorder.')
-def main(trials: int, out: Path, bag: bool) -> None:
+def main(trials: int, out: Path) -> None:
     """Run so many trials through one graph, and say whether anything grew."""
     seeds = trials // 16
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder, 'script.yaml')
         script.write_text(yaml.safe_dump(_script(seeds)), encoding='utf-8')
         command = [sys.executable, '-m', 'blocks_planning.cli', 'run', str(script)]
-        command += ['--out', folder, *(['--bag', f'{folder}/bag'] if bag else [])]
+        command += ['--out', folder, '--bag', f'{folder}/bag']
         begun = time.monotonic()
         with process(command) as running:
             taken = {}
