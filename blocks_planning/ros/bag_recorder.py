@@ -24,8 +24,10 @@ from rclpy.qos import QoSProfile
 from blocks_planning.ros.bagging.definitions import definition_of, type_hash_of
 from blocks_planning.ros.bagging.metadata import RecordedTopic, to_yaml
 from blocks_planning.ros.bagging.writer import BagWriter
+from blocks_planning.ros.diagnostics import Diagnostics, Health
 from blocks_planning.ros.graph import BAG_RECORDER
 from blocks_planning.ros.parameters import Parameter, declare
+from blocks_planning.ros.peers import Peers
 from blocks_planning.ros.runtime import run
 from blocks_planning.ros.topics import VIEW_TOPICS, Topic, ViewTopic
 
@@ -63,7 +65,7 @@ class BagRecorder(Node):
             [recorded_topic(topic, name) for topic, name in topics.items()],
             values['split_bytes'],
         )
-        self._fails = False
+        self._failure = ''
         for repair in self._writer.repairs:
             self.get_logger().warning(str(repair))
         for topic, name in topics.items():
@@ -76,33 +78,40 @@ class BagRecorder(Node):
             )
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(values['flush_period_s'], self._flush, clock=steady)
+        self._peers = Peers(self)
+        self._diagnostics = Diagnostics(self, self.health)
 
     @property
     def count(self) -> int:
         """Number of messages received."""
         return self._writer.counts.total()
 
+    def health(self) -> Health:
+        """How the recorder is."""
+        counts = {'messages_recorded': self.count, 'messages_lost': self._writer.lost}
+        around = self._peers.around(BAG_RECORDER)
+        return Health('recording', '', *around, failure=self._failure, values=counts)
+
     def _record(self, topic: str, data: bytes, info: dict[str, int]) -> None:
         received_ns = info['received_timestamp'] or time.time_ns()
         is_time = self._writer.add(topic, data, received_ns, info['source_timestamp'])
-        if is_time and not self._fails:
+        if is_time and not self._failure:
             self._flush()
 
     def _flush(self) -> None:
         try:
             self._writer.flush()
         except OSError as error:
-            if not self._fails:
+            if not self._failure:
+                self._failure = f'{self._path}: nothing more can be written: {error.strerror}'
                 self.get_logger().error(
-                    f'{self._path}: nothing more can be written: {error.strerror}; what was '
-                    'written stays, and it is tried again'
+                    f'{self._failure}; what was written stays, and it is tried again'
                 )
-            self._fails = True
             return
-        if self._fails:
+        if self._failure:
             lost = self._writer.lost
             self.get_logger().warning(f'{self._path}: written again; {lost} messages lost')
-        self._fails = False
+        self._failure = ''
 
     def finish(self) -> None:
         """Finish the bag; nothing may be received any more."""

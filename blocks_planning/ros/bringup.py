@@ -163,6 +163,6 @@ class Bringup:
                 )
             if not process.keep_alive():
                 raise BlocksPlanningError(
-                    f'{process.name} died {process.restarts + 1} times, the last time with '
-                    f'exit code {process.exit_code()}'
+                    f'{process.name} died {process.deaths} times in a row soon after its start, '
+                    f'the last time with exit code {process.exit_code()}'
                 )

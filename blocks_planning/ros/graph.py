@@ -42,7 +42,9 @@ ACTION_SEARCHER = NodeTopics(
     (TRIAL, STATE, SEARCH_REQUEST, SUBGOAL, OUTCOME),
     (SEARCH_RESULT, PLAN, ACTION),
 )
-TRIAL_ORCHESTRATOR = NodeTopics('trial_orchestrator', (STATE, SUBGOAL), (TRIAL, OUTCOME))
+TRIAL_ORCHESTRATOR = NodeTopics(
+    'trial_orchestrator', (STATE, SUBGOAL, ACTION_OUTCOME), (TRIAL, OUTCOME)
+)
 BAG_RECORDER = NodeTopics('bag_recorder', TOPICS, ())
 MARKER_PUBLISHER = NodeTopics('marker_publisher', (TRIAL, STATE, SUBGOAL, OUTCOME), (), (MARKERS,))
 WATCHER = NodeTopics('watcher', (TRIAL, STATE, SUBGOAL, OUTCOME), ())
@@ -59,3 +61,6 @@ GRAPH = {
         WATCHER,
     )
 }
+
+VIEWERS = (MARKER_PUBLISHER.name, WATCHER.name)
+"""Who only looks: a script waits for them at its beginning, but no trial ends because they go."""

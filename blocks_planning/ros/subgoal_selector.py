@@ -34,6 +34,16 @@ class SubgoalSelector(PartNode):
                 return
         super().receive(message)
 
+    def load(self) -> dict[str, object]:
+        """See :class:`PartNode`; of the questions that were asked in the trial."""
+        waiting = [query for query in self.memory.asked if query not in self.memory.known]
+        chosen = self.memory.chosen
+        return {
+            'questions_waiting': len(waiting),
+            'questions_answered': len(self.memory.known),
+            'decisions': 0 if chosen is None else len(chosen.decisions),
+        }
+
 
 def make_node(**options: Any) -> SubgoalSelector:
     """The node, not yet spinning."""

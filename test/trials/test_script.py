@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from builders import CHAIR, spec
+from disks import disk_of
 from source_imports import ROOT
 
 from blocks_planning.board.blocks import PAPER_LIBRARY, Block
@@ -310,3 +311,29 @@ def test_participant_takes_the_place_of_the_scripted_one(tmp_path: Path) -> None
     for code, said in (('Jane Doe', 'participant must be a code'), ('x' * 33, 'participant must')):
         with pytest.raises(ConfigurationError, match=said):
             read_script(path, code)
+
+
+def test_full_disk_leaves_the_records_as_they_were(tmp_path: Path) -> None:
+    """However little room there is; and when there is some again it goes on."""
+    path = tmp_path / 'trials.jsonl'
+    first, second, _ = records()
+    file = RecordFile(path)
+    file.append(first)
+    before = path.read_bytes()
+    for room in (0, 1, 100, len(second.to_line())):
+        with disk_of(len(before) + room), pytest.raises(RecordError, match='cannot be written'):
+            file.append(second)
+        assert path.read_bytes() == before
+    assert file.finished == {first.spec.trial_id}
+    file.append(second)
+    file.close()
+    assert path.read_text().splitlines() == [first.to_line(), second.to_line()]
+
+
+def test_one_at_a_time_writes_records(tmp_path: Path) -> None:
+    path = tmp_path / 'trials.jsonl'
+    file = RecordFile(path)
+    with pytest.raises(RecordError, match='is being written by another process'):
+        RecordFile(path, wait_s=0)
+    file.close()
+    RecordFile(path, wait_s=0).close()
