@@ -23,7 +23,9 @@ from blocks_planning.ros.conversions.cells import placed_from_ros
 from blocks_planning.ros.conversions.decisions import subgoal_from_ros
 from blocks_planning.ros.conversions.trial import ended_from_ros, started_from_ros
 from blocks_planning.ros.inbox import Inbox
+from blocks_planning.settings import shown
 from blocks_planning.trials import scribe, verify
+from blocks_planning.trials.consistency import Consistency
 from blocks_planning.trials.messages import Message, TrialStarted
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.status import TrialStatus
@@ -104,10 +106,12 @@ class _Heard:
     memory: scribe.Memory
     outcome: Outcome | None = None
     board: Board = field(init=False)
+    fits: Consistency = field(init=False)
 
     def __post_init__(self) -> None:
         assert self.memory.trial is not None
         self.board = self.memory.trial.spec.task.board
+        self.fits = Consistency(self.memory.trial.spec)
 
     def trial(self) -> RecordedTrial:
         assert self.memory.trial is not None
@@ -175,22 +179,26 @@ def trials_of(bag: Path, refuse: Callable[[str], None] | None = None) -> Iterato
                 heard.outcome = outcome
             else:
                 converted = _FROM_ROS[kind](heard.board, message)
+                heard.fits.check(converted)
                 heard.memory, _ = scribe.step(heard.memory, converted)
         except InvalidInput as error:
             if refuse is not None:
-                refuse(f'a {kind} of trial {trial_id!r} was refused: {error}')
+                refuse(f'a {kind} of trial {shown(trial_id)} was refused: {error}')
         except AttributeError as error:
             raise BagError(f'{bag}: was recorded with another kind of {kind}: {error}') from None
 
     for kind, message in _messages_of(bag):
-        hear(kind, message)
+        if message is not None:
+            hear(kind, message)
+        elif refuse is not None:
+            refuse(f'what was said as a {kind} was refused: its bytes are none')
         if len(trials) > _MOST_OPEN:
             oldest = next(iter(trials))
             finished.add(oldest)
             yield trials.pop(oldest).trial()
     for trial_id in sorted(outcomes - finished - set(trials)):
         if refuse is not None:
-            refuse(f'trial {trial_id!r} ended, but was never announced')
+            refuse(f'trial {shown(trial_id)} ended, but was never announced')
     for heard in trials.values():
         yield heard.trial()
 
@@ -213,7 +221,10 @@ def _outcome_from_ros(board: Board, message: Any) -> Outcome:
 
 
 def _messages_of(bag: Path) -> Iterator[tuple[str, Any]]:
-    """The messages that trials are made of, in the order in which they came."""
+    """The messages that trials are made of, in the order in which they came.
+
+    None stands for a message whose bytes say nothing: a bag has everything as it was sent.
+    """
     if not bag.exists():
         raise BagError(f'{bag}: does not exist')
     try:
@@ -246,5 +257,8 @@ def _read(bag: Path) -> Iterator[tuple[str, Any]]:
         if not connections:
             return
         for connection, _, data in reader.messages(connections):
-            message = reader.deserialize(data, connection.msgtype)
+            try:
+                message = reader.deserialize(data, connection.msgtype)
+            except Exception:  # noqa: BLE001  whatever bytes lead to
+                message = None
             yield wanted[connection.msgtype], message

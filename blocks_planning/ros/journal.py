@@ -13,6 +13,7 @@ from __future__ import annotations
 import os
 import re
 from concurrent.futures import ThreadPoolExecutor
+from hashlib import blake2b
 from pathlib import Path
 
 from blocks_planning.board.blocks import Placed
@@ -34,7 +35,7 @@ class Journal:
         """
         self._folder = folder
         self._descriptor: int | None = None
-        self._path = folder
+        self._path: Path | None = None
         self._disk = ThreadPoolExecutor(1, 'journal')  # in the order in which it is asked
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -42,21 +43,16 @@ class Journal:
             raise RecordError(f'{folder}: cannot be written: {error.strerror}') from None
 
     def begin(self, trial_id: str) -> tuple[list[Placed], str]:
-        """Open the journal of a trial, and close any other.
+        """Open the journal of a trial, and close any other; an empty one has no file.
 
         Returns:
             (the placements that it has already; a warning, or '')
         """
         self.close()
-        # An id comes from a message: no part of it may lead out of the folder.
-        self._path = self._folder / (re.sub(r'[^A-Za-z0-9_-]', '_', trial_id)[:200] + SUFFIX)
-        placements, warning = self._read()
-        whole = [_HEADER, *(b'%d %d %d %d' % placed for placed in placements)]
-        temporary = self._path.with_suffix('.new')
-        temporary.write_bytes(b'\n'.join(whole) + b'\n')
-        temporary.replace(self._path)
-        self._descriptor = os.open(self._path, os.O_WRONLY | os.O_APPEND)
-        self._disk.submit(os.fsync, self._descriptor)
+        self._path = self._folder / (_file_name(trial_id) + SUFFIX)
+        placements, warning = self._read(self._path)
+        if placements:
+            self._open(self._path, placements)
         return placements, warning
 
     def append(self, placed: Placed) -> None:
@@ -65,28 +61,51 @@ class Journal:
         Raises:
             OSError: if the disk does not take it.
         """
-        if self._descriptor is not None:
+        if self._path is not None:
+            if self._descriptor is None:
+                self._descriptor = self._open(self._path, [])
             os.write(self._descriptor, b'%d %d %d %d\n' % placed)
             self._disk.submit(os.fdatasync, self._descriptor)
 
     def end(self) -> None:
         """The trial is over: its journal is of no use any more."""
+        path = self._path
         self.close()
-        self._path.unlink(missing_ok=True)
+        if path is not None:
+            path.unlink(missing_ok=True)
 
     def close(self) -> None:
         """Close the open journal; it stays."""
+        self._path = None
         if self._descriptor is not None:
             self._disk.submit(os.close, self._descriptor)
             self._descriptor = None
 
-    def _read(self) -> tuple[list[Placed], str]:
-        if not self._path.exists():
+    def _open(self, path: Path, placements: list[Placed]) -> int:
+        """Write a journal anew, as a whole, and keep it open."""
+        whole = [_HEADER, *(b'%d %d %d %d' % placed for placed in placements)]
+        temporary = path.with_suffix('.new')
+        temporary.write_bytes(b'\n'.join(whole) + b'\n')
+        temporary.replace(path)
+        self._descriptor = os.open(path, os.O_WRONLY | os.O_APPEND)
+        self._disk.submit(os.fsync, self._descriptor)
+        return self._descriptor
+
+    def _read(self, path: Path) -> tuple[list[Placed], str]:
+        if not path.exists():
             return [], ''
-        header, *lines = self._path.read_bytes().split(b'\n')
+        header, *lines = path.read_bytes().split(b'\n')
         matches = [_LINE.fullmatch(line) for line in lines[:-1]]  # what follows the last is torn
         if header != _HEADER or not all(matches):
-            aside = self._path.with_suffix(f'.aside-{os.getpid()}')
-            self._path.replace(aside)
-            return [], f'{self._path} is not a journal; it was set aside as {aside.name}'
+            aside = path.with_suffix(f'.aside-{os.getpid()}')
+            path.replace(aside)
+            return [], f'{path} is not a journal; it was set aside as {aside.name}'
         return [Placed(*map(int, match.groups())) for match in matches if match], ''
+
+
+def _file_name(trial_id: str) -> str:
+    """A name of its own for every id; one comes from a message, and must not leave the folder."""
+    plain = re.sub(r'[^A-Za-z0-9_-]', '_', trial_id)[:150]
+    if plain == trial_id:
+        return plain
+    return f'{plain}-{blake2b(trial_id.encode(errors="replace"), digest_size=8).hexdigest()}'

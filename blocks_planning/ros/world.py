@@ -52,7 +52,7 @@ class World(PartNode):
     def take(self, message: Message) -> None:
         """See :class:`PartNode`; a trial that was under way goes on where it was."""
         placements: list[Placed] = []
-        running = None if self.trial is None else self.trial.trial_id
+        running = None if self.memory.state is None else self.memory.state.trial_id
         is_new = isinstance(message, TrialStarted) and message.trial_id != running
         if self._journal is not None and is_new:
             placements, warning = self._journal.begin(message.trial_id)
