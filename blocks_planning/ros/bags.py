@@ -39,6 +39,8 @@ _FROM_ROS: dict[str, Callable[[Board, Any], Message]] = {
     'Subgoal': subgoal_from_ros,
 }
 _KINDS = (_TRIAL, _OUTCOME, *_FROM_ROS)
+MOST_LETTERS = 200
+"""Of what a library has to say about a damaged file."""
 _MOST_OPEN = 8
 """So many trials later, nothing more is said of a trial. (Topics are not ordered.)"""
 
@@ -241,7 +243,7 @@ def _messages_of(bag: Path) -> Iterator[tuple[str, Any]]:
             entry = next(source, None)
         except Exception as error:  # noqa: BLE001  whatever a damaged file leads to
             reason = ' '.join(str(error).split()) or type(error).__name__
-            raise BagError(f'{bag}: cannot be read: {reason}') from None
+            raise BagError(f'{bag}: cannot be read: {reason[:MOST_LETTERS]}') from None
         if entry is None:
             return
         yield entry

@@ -5,7 +5,7 @@ outlives any end of the process at once, and a power cut as soon as a thread of 
 it on disk: waiting for that would take longer than the rest of a placement. One file per trial,
 ``<trial id>.journal``: a line ``blocks_planning/journal 1``, then ``width height column row`` for
 each placement. The last line may be torn; any other fault sets the file aside, and nothing is
-ever deleted but the journal of a trial that is over.
+ever deleted but the journal of a trial that is over, or was left for ``MOST_KEPT`` others.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ from blocks_planning.errors import RecordError
 _HEADER = b'blocks_planning/journal 1'
 _LINE = re.compile(rb'(\d{1,2}) (\d{1,2}) (\d{1,2}) (\d{1,2})')
 SUFFIX = '.journal'
+MOST_KEPT = 16
+"""Journals of trials that were left for others; one trial runs at a time."""
 
 
 class Journal:
@@ -83,6 +85,8 @@ class Journal:
 
     def _open(self, path: Path, placements: list[Placed]) -> int:
         """Write a journal anew, as a whole, and keep it open."""
+        for old in sorted(self._folder.glob(f'*{SUFFIX}'), key=_age_s)[MOST_KEPT:]:
+            old.unlink(missing_ok=True)
         whole = [_HEADER, *(b'%d %d %d %d' % placed for placed in placements)]
         temporary = path.with_suffix('.new')
         temporary.write_bytes(b'\n'.join(whole) + b'\n')
@@ -101,6 +105,13 @@ class Journal:
             path.replace(aside)
             return [], f'{path} is not a journal; it was set aside as {aside.name}'
         return [Placed(*map(int, match.groups())) for match in matches if match], ''
+
+
+def _age_s(path: Path) -> float:
+    try:
+        return -path.stat().st_mtime
+    except OSError:  # gone already
+        return 0.0
 
 
 def _file_name(trial_id: str) -> str:

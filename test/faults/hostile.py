@@ -28,6 +28,8 @@ from blocks_planning.trials.consistency import Consistency
 from blocks_planning.trials.spec import TrialSpec
 
 KEPT = 300
+LONGEST = 20_000
+"""What is longer is no material: it would only grow [bytes]."""
 _NUMBERS = (0, 1, 2, 7, 15, 16, 17, 100, 255, 256, 2**16, 2**31 - 1, 2**32 - 1, 2**63, 2**64 - 1)
 _FLOATS = (float('nan'), float('inf'), -float('inf'), -1.0, -0.0, 1e308, 5e-324)
 _WORDS = (
@@ -78,7 +80,8 @@ class Hostile:
                 topic.from_ros(self._specs[message.trial_id].task.board, message)
                 known = self._sequences.get(message.trial_id, 0)
                 self._sequences[message.trial_id] = max(known, message.sequence)
-            self._heard[topic].append(data)
+            if len(data) <= LONGEST:
+                self._heard[topic].append(data)
 
     def message(self) -> Captured:
         """The next message; none that a part of the graph could have sent in its place."""
@@ -105,7 +108,11 @@ class Hostile:
 
     def goal(self) -> Any:
         """A trial that can't be run, as it is asked for."""
-        return self._changed(TRIAL.ros_type())
+        while True:
+            trial = self._changed(TRIAL.ros_type())
+            with suppress(OverflowError, SystemError):
+                serialize_message(trial)
+                return trial
 
     def _has_authority(self, topic: Topic, data: bytes) -> bool:
         """Whether nodes have to believe it: a well-formed word that may be the next of its trial.
@@ -207,5 +214,5 @@ class Hostile:
             return values[:-1]
         if kind == 2:
             return values[::-1]
-        copies = 2 if chance.random() < 0.98 else 3000
+        copies = 2 if chance.random() < 0.98 else max(1, 3000 // len(values))
         return [deepcopy(value) for value in values * copies]
