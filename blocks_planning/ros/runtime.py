@@ -100,8 +100,8 @@ def initialise(args: list[str] | None, context: Context | None = None) -> None:
     try:
         rclpy.init(args=args, context=context, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
-        reason = re.sub(r', at /\S+|^failed to initialize rcl: ', '', str(error))
-        raise ConfigurationError(f'ROS arguments: {reason}') from None
+        reason = re.sub(r',?\s+at /\S+|^failed to initialize rcl: ', '', str(error))
+        raise ConfigurationError(f'ROS arguments: {" ".join(reason.split())}') from None
     finally:
         set_logger_level('rcl', LoggingSeverity.UNSET)
 
