@@ -7,11 +7,13 @@ import sys
 from pathlib import Path
 
 import pytest
+from builders import SQUARE, record
 from faults import fuzz_files, fuzz_messages
 from graphs import NODES
 
-from blocks_planning.errors import ConfigurationError
+from blocks_planning.errors import ConfigurationError, RecordError
 from blocks_planning.located import MAX_FILE_BYTES, MAX_VALUES, read_yaml
+from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.script import read_script
 
 HEAD = 'stimuli: [cogsci2021/5]\nseeds: 1\n'
@@ -114,3 +116,20 @@ def test_node_with_a_broken_file_of_parameters_ends_with_one_line(
     assert done.stderr.startswith('Error: ')
     assert len(done.stderr.splitlines()) == 1
     assert said in done.stderr
+
+
+def test_long_words_of_records_and_settings_are_cut_in_the_error(tmp_path: Path) -> None:
+    long = 'x' * 5000
+    path = tmp_path / 'records.jsonl'
+    for line in (
+        record(SQUARE).to_line().replace('"seed"', f'"{long}":1,"seed"', 1),
+        record(SQUARE).to_line().replace('"seed"', f'"{long}":1,"{long}":2,"seed"', 1),
+    ):
+        path.write_text(line, encoding='utf-8')
+        with pytest.raises(RecordError) as refused:
+            read_records(path)
+        assert len(str(refused.value)) < 500
+    for setting in (f'lambda: {long}', f'commit: {long}', f'{long}: 1'):
+        text = f'{HEAD}{SEARCHES}strategies: [{{name: scoping, {setting}}}]\n'
+        _refusal(tmp_path, text)
+    _refusal(tmp_path, f'{HEAD}library: {long}\n{SEARCHES}strategies: [{{name: none}}]\n')
