@@ -7,12 +7,15 @@ import sys
 from pathlib import Path
 
 import pytest
-from builders import SQUARE, record
+from bag_builders import Said, trial_said, write_bag
+from builders import SQUARE, record, spec
 from faults import fuzz_files, fuzz_messages
 from graphs import NODES
 
 from blocks_planning.errors import ConfigurationError, RecordError
 from blocks_planning.located import MAX_FILE_BYTES, MAX_VALUES, read_yaml
+from blocks_planning.ros.bags import trials_of
+from blocks_planning.ros.topics import STATE, TRIAL
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.script import read_script
 
@@ -133,3 +136,16 @@ def test_long_words_of_records_and_settings_are_cut_in_the_error(tmp_path: Path)
         text = f'{HEAD}{SEARCHES}strategies: [{{name: scoping, {setting}}}]\n'
         _refusal(tmp_path, text)
     _refusal(tmp_path, f'{HEAD}library: {long}\n{SEARCHES}strategies: [{{name: none}}]\n')
+
+
+def test_bag_with_messages_that_say_nothing_is_read_but_for_them(tmp_path: Path) -> None:
+    trial, said = trial_said(spec(SQUARE))
+    spoilt = [Said(one.topic, one.message) for one in said if one.topic in (TRIAL, STATE)]
+    for one in spoilt:
+        one.__dict__['data'] = one.data[:9]
+    bag = write_bag(tmp_path / 'bag', [*spoilt, *said])
+    refused: list[str] = []
+    (found,) = trials_of(bag, refused.append)
+    assert found.record == trial
+    assert len(refused) == len(spoilt)
+    assert all('its bytes are none' in sentence for sentence in refused)
