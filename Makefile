@@ -2,7 +2,7 @@
 # Paths in recipes are relative, so the checkout may lie in a folder with spaces in its name.
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo reproduce test parity faults lint types bench soak clean
+.PHONY: help setup demo reproduce test parity faults fuzz cancels lint types bench soak clean
 .SUFFIXES:
 
 BIN := .venv/bin
@@ -10,6 +10,9 @@ CACHE := $(CURDIR)/.cache
 JOBS ?= 2
 OUT ?= results
 ARGS ?=
+MESSAGES ?= 100000
+FILES ?= 20000
+SEED ?= 0
 
 export XDG_CACHE_HOME := $(CACHE)/xdg
 export PIP_CACHE_DIR := $(CACHE)/pip
@@ -53,6 +56,13 @@ parity: setup  ## Compare 272 trials through the graph with the same in one proc
 
 faults: setup  ## Kill nodes while trials run (ARGS='--kills 200 --trials 60 --seed 0')
 	PYTHONPATH=test $(BIN)/python -m faults $(ARGS)
+
+fuzz: setup  ## Send 100,000 hostile messages, read 20,000 spoilt files (MESSAGES, FILES, SEED)
+	cd test && ../$(BIN)/python -m faults.fuzz_messages $(MESSAGES) $(SEED)
+	cd test && ../$(BIN)/python -m faults.fuzz_files $(FILES) $(SEED)
+
+cancels: setup  ## Cancel 1,000 goals, each at a moment of its own (ARGS='COUNT SEED')
+	cd test && ../$(BIN)/python -m faults.cancels $(ARGS)
 
 lint: setup  ## Check style and format
 	$(BIN)/ruff check

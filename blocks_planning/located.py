@@ -12,6 +12,10 @@ import yaml
 from blocks_planning.errors import ConfigurationError, InvalidInput
 
 T = TypeVar('T')
+MAX_FILE_BYTES = 1 << 20
+MAX_VALUES = 100_000
+"""A few lines of aliases of aliases would stand for more than any memory holds."""
+_SHOWN = 60
 
 
 @dataclass(frozen=True)
@@ -48,14 +52,22 @@ class Located:
     def mapping(self) -> dict[str, Located]:
         """The entries of a mapping with any keys."""
         if not isinstance(self.content, dict):
-            raise self.fail(f'expected keys with values, got {self.plain()!r}')
+            raise self.fail(f'expected keys with values, got {self}')
         return self.content
 
     def items(self) -> list[Located]:
         """The items of a list that is not empty."""
         if not isinstance(self.content, list) or not self.content:
-            raise self.fail(f'expected a list with at least one item, got {self.plain()!r}')
+            raise self.fail(f'expected a list with at least one item, got {self}')
         return self.content
+
+    def __str__(self) -> str:
+        """The value as an error message shows it: on one line, and cut if it is long."""
+        if isinstance(self.content, dict):
+            return f'{len(self.content)} keys with values'
+        if isinstance(self.content, list):
+            return f'a list of {len(self.content)} items'
+        return _shown(self.content)
 
     def plain(self) -> Any:
         """The value without places."""
@@ -73,18 +85,31 @@ class Located:
             raise self.fail(str(error)) from None
 
 
+def _shown(value: object) -> str:
+    try:
+        text = repr(value)
+    except ValueError:  # thousands of digits
+        return 'something too long to be shown'
+    return text if len(text) <= _SHOWN else f'{text[: _SHOWN - 3]}...'
+
+
 def read_yaml(path: Path) -> Located:
     """Read a YAML file.
 
     Raises:
-        ConfigurationError: if it can't be read, is not YAML, or repeats a key; it names file and
+        ConfigurationError: if it can't be read, is not YAML, repeats a key, is larger than
+            ``MAX_FILE_BYTES`` or stands for more than ``MAX_VALUES`` values; it names file and
             line.
     """
     try:
-        node = yaml.compose(path.read_text(encoding='utf-8'), Loader=yaml.SafeLoader)
+        with path.open('rb') as file:
+            data = file.read(MAX_FILE_BYTES + 1)
+        if len(data) > MAX_FILE_BYTES:
+            raise ConfigurationError(f'{path}: is larger than {MAX_FILE_BYTES} bytes')
+        node = yaml.compose(data.decode(), Loader=yaml.SafeLoader)
         if node is None:
             raise ConfigurationError(f'{path}: is empty')
-        return _locate(node, str(path), '')
+        return _Reader(str(path)).locate(node, '')
     except OSError as error:
         raise ConfigurationError(f'{path}: cannot be read: {error.strerror}') from None
     except UnicodeDecodeError as error:
@@ -93,31 +118,49 @@ def read_yaml(path: Path) -> Located:
         mark = getattr(error, 'problem_mark', None)
         place = f'{path}, line {mark.line + 1}' if mark else str(path)
         problem = getattr(error, 'problem', None) or 'unreadable'
-        raise ConfigurationError(f'{place}: is not YAML: {problem}') from None
+        raise ConfigurationError(f'{place}: is not YAML: {" ".join(problem.split())}') from None
     except RecursionError:
         raise ConfigurationError(f'{path}: is nested too deeply') from None
 
 
-def _locate(node: yaml.Node, path: str, key: str) -> Located:
-    place = f'{path}, line {node.start_mark.line + 1}' + (f', key {key!r}' if key else '')
-    if isinstance(node, yaml.MappingNode):
-        return Located(dict(_entries(node, path)), place)
-    if isinstance(node, yaml.SequenceNode):
-        return Located([_locate(item, path, key) for item in node.value], place)
-    try:
-        return Located(yaml.SafeLoader('').construct_object(node), place)
-    except (yaml.YAMLError, ValueError):
-        shown = str(node.value)[:40]
-        raise ConfigurationError(f'{place}: {shown!r} is no value that can be read') from None
+class _Reader:
+    """Gives the values of a file their places, and counts them."""
 
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self._left = MAX_VALUES
 
-def _entries(node: yaml.MappingNode, path: str) -> Iterator[tuple[str, Located]]:
-    seen = set()
-    for name, value in node.value:
-        key = str(name.value)
-        line = name.start_mark.line + 1
-        if key in seen:
-            raise ConfigurationError(f'{path}, line {line}, key {key!r}: is there twice')
-        seen.add(key)
-        located = _locate(value, path, key)
-        yield key, Located(located.content, f'{path}, line {line}, key {key!r}')
+    def locate(self, node: yaml.Node, key: str) -> Located:
+        """The value of a node, which stands behind a key, or behind none."""
+        place = self._place(node, key)
+        self._left -= 1
+        if self._left < 0:
+            raise ConfigurationError(f'{place}: the file has more than {MAX_VALUES} values')
+        if isinstance(node, yaml.MappingNode):
+            return Located(dict(self._entries(node)), place)
+        if isinstance(node, yaml.SequenceNode):
+            return Located([self.locate(item, key) for item in node.value], place)
+        try:
+            return Located(yaml.SafeLoader('').construct_object(node), place)
+        except RecursionError:
+            raise
+        except Exception:  # noqa: BLE001  such as !!bool maybe, which it does not expect itself
+            raise ConfigurationError(
+                f'{place}: {_shown(node.value)} is no value that can be read'
+            ) from None
+
+    def _place(self, node: yaml.Node, key: str) -> str:
+        line = f'{self._path}, line {node.start_mark.line + 1}'
+        return f'{line}, key {_shown(key)}' if key else line
+
+    def _entries(self, node: yaml.MappingNode) -> Iterator[tuple[str, Located]]:
+        seen = set()
+        for name, value in node.value:
+            if not isinstance(name, yaml.ScalarNode):
+                raise ConfigurationError(f'{self._place(name, "")}: a key must be a word')
+            key = str(name.value)
+            if key in seen:
+                raise ConfigurationError(f'{self._place(name, key)}: is there twice')
+            seen.add(key)
+            located = self.locate(value, key)
+            yield key, Located(located.content, self._place(name, key))

@@ -68,11 +68,11 @@ def make(
         ConfigurationError: for an unknown name or setting, or a value out of its range.
     """
     if not isinstance(name, str) or name not in registry:
-        raise ConfigurationError(f'{kind} must be one of {", ".join(registry)}, got {name!r}')
+        raise ConfigurationError(f'{kind} must be one of {", ".join(registry)}, got {shown(name)}')
     known = {setting_name(field): field.name for field in fields(registry[name])}
     for setting in settings:
         if setting not in known:
             raise ConfigurationError(
-                f'{kind} {name} has no setting {setting!r}; it has {", ".join(known) or "none"}'
+                f'{kind} {name} has no setting {shown(setting)}; it has {", ".join(known) or "none"}'
             )
     return registry[name](**{known[setting]: value for setting, value in settings.items()})

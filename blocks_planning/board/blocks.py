@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeAlias
 
 from blocks_planning.board.geometry import MAX_SIDE, Column, Row
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.settings import shown
 
 MAX_BLOCKS = 64
 """Most blocks in a library."""
@@ -95,7 +96,7 @@ def parse_library(text: str, origin: str = 'block library') -> Library:
         if match is None:
             raise ConfigurationError(
                 f'{origin}: expected blocks as WIDTHxHEIGHT between commas, such as 1x2,2x1, '
-                f'got {item.strip()!r}'
+                f'got {shown(item.strip())}'
             )
         blocks.append(Block(int(match[1]), int(match[2])))
     return check_library(tuple(blocks), origin)

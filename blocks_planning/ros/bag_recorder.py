@@ -17,8 +17,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from blocks_planning.ros.bagging.definitions import definition_of, type_hash_of
@@ -26,6 +24,7 @@ from blocks_planning.ros.bagging.metadata import RecordedTopic, to_yaml
 from blocks_planning.ros.bagging.writer import BagWriter
 from blocks_planning.ros.diagnostics import Diagnostics, Health
 from blocks_planning.ros.graph import BAG_RECORDER
+from blocks_planning.ros.guarded import GuardedNode
 from blocks_planning.ros.parameters import Parameter, declare
 from blocks_planning.ros.peers import Peers
 from blocks_planning.ros.runtime import run
@@ -42,7 +41,7 @@ PARAMETERS = (BAG_DIR, FLUSH_PERIOD, SPLIT_BYTES)
 _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
 
-class BagRecorder(Node):
+class BagRecorder(GuardedNode):
     """Hands every message, as it came, to a :class:`BagWriter`."""
 
     drain_s = 0.1
@@ -76,8 +75,7 @@ class BagRecorder(Node):
                 topic.subscription_qos,
                 raw=True,
             )
-        steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self.create_timer(values['flush_period_s'], self._flush, clock=steady)
+        self.create_timer(values['flush_period_s'], self._flush, clock=self.steady)
         self._peers = Peers(self)
         self._diagnostics = Diagnostics(self, self.health)
 

@@ -26,7 +26,9 @@ from blocks_planning.ros.conversions.cells import placed_from_ros
 from blocks_planning.ros.conversions.decisions import subgoal_from_ros
 from blocks_planning.ros.conversions.trial import ended_from_ros, started_from_ros
 from blocks_planning.ros.inbox import Inbox
+from blocks_planning.settings import shown
 from blocks_planning.trials import scribe, verify
+from blocks_planning.trials.consistency import Consistency
 from blocks_planning.trials.messages import Message, TrialStarted
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.status import TrialStatus
@@ -40,6 +42,8 @@ _FROM_ROS: dict[str, Callable[[Board, Any], Message]] = {
     'Subgoal': subgoal_from_ros,
 }
 _KINDS = (_TRIAL, _OUTCOME, *_FROM_ROS)
+MOST_LETTERS = 200
+"""Of what a library has to say about a damaged file."""
 _MOST_OPEN = 8
 """So many trials later, nothing more is said of a trial. (Topics are not ordered.)"""
 
@@ -130,10 +134,12 @@ class _Heard:
     outcome: Outcome | None = None
     spans_files: bool = False
     board: Board = field(init=False)
+    fits: Consistency = field(init=False)
 
     def __post_init__(self) -> None:
         assert self.memory.trial is not None
         self.board = self.memory.trial.spec.task.board
+        self.fits = Consistency(self.memory.trial.spec)
 
     def trial(self) -> RecordedTrial:
         assert self.memory.trial is not None
@@ -233,22 +239,26 @@ def trials_of(bag: Path, refuse: Callable[[str], None] | None = None) -> Iterato
                 heard.outcome = outcome
             else:
                 converted = _FROM_ROS[kind](heard.board, message)
+                heard.fits.check(converted)
                 heard.memory, _ = scribe.step(heard.memory, converted)
         except InvalidInput as error:
             if refuse is not None:
-                refuse(f'a {kind} of trial {trial_id!r} was refused: {error}')
+                refuse(f'a {kind} of trial {shown(trial_id)} was refused: {error}')
         except AttributeError as error:
             raise BagError(f'{bag}: was recorded with another kind of {kind}: {error}') from None
 
     for kind, message, file in _messages_of(bag):
-        hear(kind, message, file)
+        if message is not None:
+            hear(kind, message, file)
+        elif refuse is not None:
+            refuse(f'what was said as a {kind} was refused: its bytes are none')
         if len(trials) > _MOST_OPEN:
             oldest = next(iter(trials))
             finished.add(oldest)
             yield trials.pop(oldest).trial()
     for trial_id in sorted(outcomes - finished - set(trials)):
         if refuse is not None:
-            refuse(f'trial {trial_id!r} ended, but was never announced')
+            refuse(f'trial {shown(trial_id)} ended, but was never announced')
     for heard in trials.values():
         yield heard.trial()
 
@@ -274,7 +284,8 @@ def _messages_of(bag: Path) -> Iterator[tuple[str, Any, int]]:
     """The messages that trials are made of, in the order in which they came.
 
     Yields:
-        (kind, message, number of the file that it stands in)
+        (kind, message, number of the file that it stands in); None stands for a message whose
+        bytes say nothing: a bag has everything as it was sent.
     """
     if not bag.exists():
         raise BagError(f'{bag}: does not exist')
@@ -292,7 +303,7 @@ def _messages_of(bag: Path) -> Iterator[tuple[str, Any, int]]:
             entry = next(source, None)
         except Exception as error:  # noqa: BLE001  whatever a damaged file leads to
             reason = ' '.join(str(error).split()) or type(error).__name__
-            raise BagError(f'{bag}: cannot be read: {reason}') from None
+            raise BagError(f'{bag}: cannot be read: {reason[:MOST_LETTERS]}') from None
         if entry is None:
             return
         yield entry
@@ -310,7 +321,10 @@ def _read(bag: Path) -> Iterator[tuple[str, Any, int]]:
         if not connections:
             return
         for connection, received_ns, data in reader.messages(connections):
-            message = reader.deserialize(data, connection.msgtype)
+            try:
+                message = reader.deserialize(data, connection.msgtype)
+            except Exception:  # noqa: BLE001  whatever bytes lead to
+                message = None
             place = bisect_right(times_ns, received_ns) - 1
             file = begins[place].number if place >= 0 else 0
             yield wanted[connection.msgtype], message, file

@@ -7,6 +7,7 @@ from typing import Any
 
 MOST_TRIALS = 4
 MOST_MESSAGES = 1000
+MOST_BYTES = 32 << 20
 
 
 class Inbox:
@@ -18,16 +19,24 @@ class Inbox:
 
     def __init__(self) -> None:
         """An empty inbox."""
-        self._held: OrderedDict[str, deque[Any]] = OrderedDict()
+        self._held: OrderedDict[str, deque[tuple[int, Any]]] = OrderedDict()
+        self._bytes = 0
 
-    def hold(self, trial_id: str, message: Any) -> None:
-        """Keep a message until its trial is announced."""
-        held = self._held.setdefault(trial_id, deque(maxlen=MOST_MESSAGES))
-        held.append(message)
+    def hold(self, trial_id: str, message: Any, size: int = 0) -> None:
+        """Keep a message, of so many bytes, until its trial is announced."""
+        held = self._held.setdefault(trial_id, deque())
+        held.append((size, message))
+        self._bytes += size
         self._held.move_to_end(trial_id)
-        while len(self._held) > MOST_TRIALS:
-            self._held.popitem(last=False)
+        while len(held) > MOST_MESSAGES:
+            self._bytes -= held.popleft()[0]
+        while len(self._held) > MOST_TRIALS or (self._bytes > MOST_BYTES and len(self._held) > 1):
+            self.take(next(iter(self._held)))
+        while self._bytes > MOST_BYTES:
+            self._bytes -= held.popleft()[0]
 
     def take(self, trial_id: str) -> list[Any]:
         """The messages of a trial that is known now, in the order in which they came."""
-        return list(self._held.pop(trial_id, ()))
+        held = self._held.pop(trial_id, ())
+        self._bytes -= sum(size for size, _ in held)
+        return [message for _, message in held]

@@ -5,7 +5,8 @@ outlives any end of the process at once, and a power cut as soon as a thread of 
 it on disk: waiting for that would take longer than the rest of a placement. One file per trial,
 ``<trial id>.journal``: a line ``blocks_planning/journal 1``, then ``width height column row`` for
 each placement. The last line may be torn; any other fault sets the file aside, and nothing is
-ever deleted but the journal of a trial that is over. One process at a time writes in a folder.
+ever deleted but the journal of a trial that is over, or was left for ``MOST_KEPT`` others. One
+process at a time writes in a folder.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import os
 import re
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from hashlib import blake2b
 from itertools import count
 from pathlib import Path
 
@@ -24,6 +26,8 @@ from blocks_planning.trials import disk
 _HEADER = b'blocks_planning/journal 1'
 _LINE = re.compile(rb'(\d{1,2}) (\d{1,2}) (\d{1,2}) (\d{1,2})')
 SUFFIX = '.journal'
+MOST_KEPT = 16
+"""Journals of trials that were left for others; one trial runs at a time."""
 
 
 class Journal:
@@ -41,7 +45,7 @@ class Journal:
         """
         self._folder = folder
         self._descriptor: int | None = None
-        self._path = folder
+        self._path: Path | None = None
         self._failure: OSError | None = None
         self._disk = ThreadPoolExecutor(1, 'journal')  # in the order in which it is asked
         try:
@@ -56,7 +60,7 @@ class Journal:
             raise
 
     def begin(self, trial_id: str) -> tuple[list[Placed], str]:
-        """Open the journal of a trial, and close any other.
+        """Open the journal of a trial, and close any other; an empty one has no file.
 
         Returns:
             (the placements that it has already; a warning, or '')
@@ -65,13 +69,13 @@ class Journal:
             RecordError: if the disk does not take it, or does not give it back.
         """
         self.close()
-        # An id comes from a message: no part of it may lead out of the folder.
-        self._path = self._folder / (re.sub(r'[^A-Za-z0-9_-]', '_', trial_id)[:200] + SUFFIX)
+        self._path = path = self._folder / (_file_name(trial_id) + SUFFIX)
         try:
-            placements, warning = self._read()
-            self._open(placements)
+            placements, warning = _read(path)
+            if placements:
+                self._open(path, placements)
         except OSError as error:
-            raise self._unwritable(error) from None
+            raise _unwritable(path, error) from None
         return placements, warning
 
     def append(self, placed: Placed) -> None:
@@ -80,15 +84,18 @@ class Journal:
         Raises:
             RecordError: if the disk does not take it; the journal is as it was.
         """
-        if self._descriptor is None:
-            raise RecordError(f'{self._path}: could not be opened when the trial began')
+        if self._path is None:
+            raise RecordError(f'{self._folder}: has no journal open')
         try:
+            descriptor = self._descriptor
+            if descriptor is None:
+                descriptor = self._open(self._path, [])
             if self._failure is not None:
                 raise self._failure
-            disk.append(self._descriptor, _line(placed), sync=False)
+            disk.append(descriptor, _line(placed), sync=False)
         except OSError as error:
-            raise self._unwritable(error) from None
-        self._disk.submit(self._sync, self._descriptor)
+            raise _unwritable(self._path, error) from None
+        self._disk.submit(self._sync, descriptor)
 
     def refuse(self) -> str:
         """Set the open journal aside, for it can't be right, and begin an empty one.
@@ -99,22 +106,27 @@ class Journal:
         Raises:
             RecordError: if the disk does not take it.
         """
+        path = self._path
+        assert path is not None
         self.close()
+        self._path = path
         try:
-            name = self._set_aside()
-            self._open([])
+            name = _set_aside(path)
         except OSError as error:
-            raise self._unwritable(error) from None
-        return f'{self._path} is of another trial; it was set aside as {name}'
+            raise _unwritable(path, error) from None
+        return f'{path} is of another trial; it was set aside as {name}'
 
     def end(self) -> None:
         """The trial is over: its journal is of no use any more."""
+        path = self._path
         self.close()
-        with suppress(OSError):  # it does no harm: its trial does not run again
-            self._path.unlink(missing_ok=True)
+        if path is not None:
+            with suppress(OSError):  # it does no harm: its trial does not run again
+                path.unlink(missing_ok=True)
 
     def close(self) -> None:
         """Close the open journal; it stays."""
+        self._path = None
         if self._descriptor is not None:
             self._disk.submit(os.close, self._descriptor)
             self._descriptor = None
@@ -125,19 +137,22 @@ class Journal:
         self._disk.shutdown()
         os.close(self._lock)
 
-    def _open(self, placements: list[Placed]) -> None:
+    def _open(self, path: Path, placements: list[Placed]) -> int:
         """Write all anew, so that nothing torn is left, and open it for more."""
-        temporary = self._path.with_suffix('.new')
+        for old in sorted(self._folder.glob(f'*{SUFFIX}'), key=_age_s)[MOST_KEPT:]:
+            old.unlink(missing_ok=True)
+        temporary = path.with_suffix('.new')
         with temporary.open('wb') as file:
             file.write(b''.join([_HEADER + b'\n', *map(_line, placements)]))
             if placements:  # an empty journal is worth no waiting
                 file.flush()
                 os.fsync(file.fileno())
-        temporary.replace(self._path)
-        self._descriptor = os.open(self._path, os.O_RDWR | os.O_APPEND)
+        temporary.replace(path)
+        self._descriptor = os.open(path, os.O_RDWR | os.O_APPEND)
         self._failure = None
         self._disk.submit(self._sync, self._descriptor)
         self._disk.submit(self._sync, self._lock)
+        return self._descriptor
 
     def _sync(self, descriptor: int) -> None:
         """See a file, or the names in the folder, on disk; if not, the next placement fails."""
@@ -146,24 +161,43 @@ class Journal:
         except OSError as error:
             self._failure = error
 
-    def _unwritable(self, error: OSError) -> RecordError:
-        return RecordError(f'{self._path}: cannot be written: {error.strerror}')
 
-    def _set_aside(self) -> str:
-        free = (self._path.with_suffix(f'.aside-{number}') for number in count(1))
-        aside = next(path for path in free if not path.exists())
-        self._path.replace(aside)
-        return aside.name
+def _unwritable(path: Path, error: OSError) -> RecordError:
+    return RecordError(f'{path}: cannot be written: {error.strerror}')
 
-    def _read(self) -> tuple[list[Placed], str]:
-        if not self._path.exists():
-            return [], ''
-        header, *lines = self._path.read_bytes().split(b'\n')
-        matches = [_LINE.fullmatch(line) for line in lines[:-1]]  # what follows the last is torn
-        if header != _HEADER or not all(matches):
-            return [], f'{self._path} is not a journal; it was set aside as {self._set_aside()}'
-        return [Placed(*map(int, match.groups())) for match in matches if match], ''
+
+def _set_aside(path: Path) -> str:
+    free = (path.with_suffix(f'.aside-{number}') for number in count(1))
+    aside = next(path for path in free if not path.exists())
+    path.replace(aside)
+    return aside.name
+
+
+def _read(path: Path) -> tuple[list[Placed], str]:
+    """The placements of a journal, and a warning if it was none."""
+    if not path.exists():
+        return [], ''
+    header, *lines = path.read_bytes().split(b'\n')
+    matches = [_LINE.fullmatch(line) for line in lines[:-1]]  # what follows the last is torn
+    if header != _HEADER or not all(matches):
+        return [], f'{path} is not a journal; it was set aside as {_set_aside(path)}'
+    return [Placed(*map(int, match.groups())) for match in matches if match], ''
 
 
 def _line(placed: Placed) -> bytes:
     return b'%d %d %d %d\n' % placed
+
+
+def _age_s(path: Path) -> float:
+    try:
+        return -path.stat().st_mtime
+    except OSError:  # gone already
+        return 0.0
+
+
+def _file_name(trial_id: str) -> str:
+    """A name of its own for every id; one comes from a message, and must not leave the folder."""
+    plain = re.sub(r'[^A-Za-z0-9_-]', '_', trial_id)[:150]
+    if plain == trial_id:
+        return plain
+    return f'{plain}-{blake2b(trial_id.encode(errors="replace"), digest_size=8).hexdigest()}'

@@ -9,6 +9,7 @@ from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValu
 from rclpy.node import Node
 
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.settings import shown
 
 _BY_ROS = ('use_sim_time', 'start_type_description_service')
 
@@ -47,7 +48,7 @@ def declare(node: Node, parameters: tuple[Parameter, ...]) -> dict[str, Any]:
     for name in given:
         if name not in known and name not in _BY_ROS and not name.startswith('qos_overrides.'):
             raise ConfigurationError(
-                f'node {node.get_name()} has no parameter {name!r}; it has {", ".join(known)}'
+                f'node {node.get_name()} has no parameter {shown(name)}; it has {", ".join(known)}'
             )
     return {parameter.name: _declare(node, parameter, given) for parameter in parameters}
 
@@ -63,5 +64,5 @@ def _declare(node: Node, parameter: Parameter, given: dict[str, Any]) -> Any:
             wanted += f' from {parameter.range[0]} to {parameter.range[1]}'
         raise ConfigurationError(
             f'node {node.get_name()}: parameter {parameter.name} must be a {wanted}, '
-            f'got {given[parameter.name].value!r}'
+            f'got {shown(given[parameter.name].value)}'
         ) from None

@@ -5,20 +5,20 @@ from __future__ import annotations
 from functools import partial
 from typing import Any, Protocol
 
-from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
-from rclpy.node import Node
 
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import InvalidInput
 from blocks_planning.ros.diagnostics import Diagnostics, Health
 from blocks_planning.ros.graph import NodeTopics
+from blocks_planning.ros.guarded import GuardedNode, read_message
 from blocks_planning.ros.inbox import Inbox
 from blocks_planning.ros.parameters import Parameter, declare
 from blocks_planning.ros.peers import Peers
 from blocks_planning.ros.topics import TRIAL, Topic
-from blocks_planning.trials.messages import Message, Remind, TrialStarted
+from blocks_planning.trials.consistency import Consistency
+from blocks_planning.trials.messages import Message, Remind, TrialEnded, TrialStarted
 
 REMIND_PERIOD = Parameter(
     'remind_period_s',
@@ -26,7 +26,6 @@ REMIND_PERIOD = Parameter(
     'After so long without news, say again what nobody has answered [s].',
     (0.05, 3600.0),
 )
-WARN_PERIOD_S = 1.0
 ACKNOWLEDGE_S = 0.3
 
 
@@ -40,11 +39,12 @@ class Part(Protocol):
         ...
 
 
-class PartNode(Node):
+class PartNode(GuardedNode):
     """A node that owns one part's memory.
 
-    A message that can't be is refused with a warning and counted; one of a trial that is not
-    known yet waits; everything else is for the part to judge.
+    A message that can't be, or does not fit its trial, is refused with a warning and counted; one
+    of a trial that is not known yet waits; everything else is for the part to judge. What the
+    node has latched is said again while there is no news: a queue that was flooded has lost it.
     """
 
     def __init__(
@@ -61,13 +61,13 @@ class PartNode(Node):
         """
         super().__init__(topics.name, **options)
         self.values = declare(self, (REMIND_PERIOD, *parameters))
-        self.steady = Clock(clock_type=ClockType.STEADY_TIME)  # no jump of the other one matters
-        self.refused = 0
         self.trial: TrialStarted | None = None
         self._part = part
         self.memory = part.Memory()
         self._inbox = Inbox()
         self._has_news = False
+        self._fits: Consistency | None = None
+        self._latched: dict[Topic, Any] = {}
         self._said = {topic.kind: topic for topic in topics.says}
         events = PublisherEventCallbacks(matched=self._on_match)
         self._outlets = {
@@ -78,7 +78,11 @@ class PartNode(Node):
         }
         for topic in topics.listens:
             self.create_subscription(
-                topic.ros_type, topic.name, partial(self._receive, topic), topic.subscription_qos
+                topic.ros_type,
+                topic.name,
+                partial(self._receive, topic),
+                topic.subscription_qos,
+                raw=True,
             )
         self.create_timer(self.values['remind_period_s'], self._remind, clock=self.steady)
         self.topics = topics
@@ -87,10 +91,14 @@ class PartNode(Node):
 
     def take(self, message: Message) -> None:
         """Let the part step, and say what it says."""
-        self._has_news = True
+        before = self.memory
         if isinstance(message, TrialStarted):
             self.begin(message)
-        for answer in self.advance(message):
+        if isinstance(message, TrialEnded):
+            self._latched.clear()
+        said = self.advance(message)
+        self._has_news |= self.memory is not before and not isinstance(message, Remind)
+        for answer in said:
             self.say(answer)
         if isinstance(message, TrialStarted):
             for topic, held in self._inbox.take(message.trial_id):
@@ -126,7 +134,9 @@ class PartNode(Node):
 
     def begin(self, trial: TrialStarted) -> None:
         """Take note of the trial that runs."""
-        self.trial = trial
+        if self.trial is None or self.trial.trial_id != trial.trial_id:
+            self._fits = Consistency(trial.spec)
+            self.trial = trial
 
     @property
     def board(self) -> Board:
@@ -148,6 +158,8 @@ class PartNode(Node):
     def publish(self, topic: Topic, message: Any) -> None:
         """Stamp and publish."""
         message.header.stamp = self.get_clock().now().to_msg()
+        if topic.latched:
+            self._latched[topic] = message
         self._outlets[topic.kind].publish(message)
 
     def wait_until_heard(self, topic: Topic) -> None:
@@ -158,28 +170,24 @@ class PartNode(Node):
         """Do what the part wants done that is no message."""
         raise NotImplementedError(f'{type(message).__name__} is not for {self.get_name()}')
 
-    def _receive(self, topic: Topic, message: Any) -> None:
+    def _receive(self, topic: Topic, data: bytes) -> None:
         try:
+            message = read_message(topic.ros_type, data)
             if topic is TRIAL:
                 converted = topic.from_ros(message)
             elif self.trial is None or message.trial_id != self.trial.trial_id:
-                self._inbox.hold(message.trial_id, (topic, message))
+                self._inbox.hold(message.trial_id, (topic, data), len(data))
                 return
             elif topic.needs_board:
                 converted = topic.from_ros(self.board, message)
             else:
                 converted = topic.from_ros(message)
+            if self._fits is not None and topic is not TRIAL:
+                self._fits.check(converted)
         except InvalidInput as error:
-            self.refuse(str(error), topic.name)
-            return
-        self.receive(converted)
-
-    def refuse(self, reason: str, topic: str) -> None:
-        """Count a message that is not taken, and say why, not too often."""
-        self.refused += 1
-        self.get_logger().warning(
-            f'refused a message on {topic}: {reason}', throttle_duration_sec=WARN_PERIOD_S
-        )
+            self.refuse(f'a message on {topic.name}', error)
+        else:
+            self.receive(converted)
 
     def _on_match(self, status: QoSPublisherMatchedInfo) -> None:
         """A listener came: it may have missed what was asked before."""
@@ -189,4 +197,7 @@ class PartNode(Node):
     def _remind(self) -> None:
         if self.trial is not None and not self._has_news:
             self.take(Remind(self.trial.trial_id))
+            for topic, message in list(self._latched.items()):
+                if message.trial_id == self.trial.trial_id:
+                    self._outlets[topic.kind].publish(message)
         self._has_news = False

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import faulthandler
 import os
+import re
 import signal
 import sys
 import threading
@@ -26,11 +27,14 @@ from typing import NoReturn
 
 import rclpy
 import rclpy.utilities
+from rclpy.context import Context
+from rclpy.exceptions import NameValidationException, ParameterException
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from blocks_planning.errors import BlocksPlanningError
+from blocks_planning.errors import BlocksPlanningError, ConfigurationError
 from blocks_planning.ros.processes import PARENT_VARIABLE
 from blocks_planning.ros.single import claim_name
 
@@ -62,16 +66,15 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
     prepare_environment()
     stop = threading.Event()
     began = _look_at_clocks()  # before there is anybody to drop it
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda received, _: _on_signal(stop, received))
     try:
+        initialise(args)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda received, _: _on_signal(stop, received))
         node = make_node(stop)
         claim = claim_name(node.context.get_domain_id(), node.get_fully_qualified_name())
-    except BlocksPlanningError as error:
-        sys.stderr.write(f'Error: {error}\n')
-        sys.stderr.flush()
-        os._exit(BAD_INPUT)
+    except (BlocksPlanningError, ParameterException, NameValidationException) as error:
+        sys.stderr.write(f'Error: {" ".join(str(error).split())}\n')
+        _leave(BAD_INPUT)
     failures: list[BaseException] = []
     executor = SingleThreadedExecutor()
     executor.add_node(node)
@@ -97,6 +100,22 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
     for failure in failures:
         traceback.print_exception(failure)
     _leave(CRASHED if failures else getattr(node, 'exit_code', 0))
+
+
+def initialise(args: list[str] | None, context: Context | None = None) -> None:
+    """Initialise rclpy, with handlers of signals of its own left out.
+
+    Raises:
+        ConfigurationError: for ROS arguments, or a file of parameters, that it can't read.
+    """
+    set_logger_level('rcl', LoggingSeverity.FATAL)  # it would say less, on a line of its own
+    try:
+        rclpy.init(args=args, context=context, signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as error:
+        reason = re.sub(r',?\s+at /\S+|^failed to initialize rcl: ', '', str(error))
+        raise ConfigurationError(f'ROS arguments: {" ".join(reason.split())}') from None
+    finally:
+        set_logger_level('rcl', LoggingSeverity.UNSET)
 
 
 def leave_if_up(code: int) -> None:

@@ -30,7 +30,7 @@ class SubgoalSelector(PartNode):
         if isinstance(message, ProposalMade):
             reason = selector.reason_against(self.memory, message.proposal)
             if reason:
-                self.refuse(reason, 'subgoal/proposal')
+                self.refuse('a message on subgoal/proposal', reason)
                 return
         super().receive(message)
 

@@ -101,6 +101,7 @@ class TrialOrchestrator(PartNode):
             execute_callback=self._execute,
             goal_callback=self._judge_goal,
             cancel_callback=self._cancel,
+            handle_accepted_callback=self._accept,
             callback_group=ReentrantCallbackGroup(),
         )
 
@@ -115,8 +116,10 @@ class TrialOrchestrator(PartNode):
 
     def take(self, message: Message) -> None:
         """See :class:`PartNode`; whoever sent the goal hears of it."""
+        before = self.memory
         super().take(message)
-        if self._goal is not None and isinstance(message, (WorldState, SubgoalChosen)):
+        is_news = self.memory is not before and isinstance(message, (WorldState, SubgoalChosen))
+        if self._goal is not None and is_news:
             self._goal.publish_feedback(self._feedback())
 
     def _feedback(self) -> RunTrial.Feedback:
@@ -143,6 +146,7 @@ class TrialOrchestrator(PartNode):
             reason = str(error)
         outcome = outcome_to_ros(message.trial_id, record, reason)
         self.publish(OUTCOME, outcome)
+        self._latched.clear()  # nobody is to begin again
         self._ended += 1
         self._failures += record.status is not TrialStatus.SUCCESS
         self._trouble = reason
@@ -238,15 +242,19 @@ class TrialOrchestrator(PartNode):
     def _judge_goal(self, goal: RunTrial.Goal) -> GoalResponse:
         """Refuse a goal that can't be run, or that comes while a trial runs."""
         if self._done is not None or self._script is not None:
-            self.get_logger().warning('refused a goal: a trial is running')
+            self.refuse('a goal', 'a trial is running')
             return GoalResponse.REJECT
         try:
             spec_from_ros(goal.trial)
         except InvalidInput as error:
-            self.get_logger().warning(f'refused a goal: {error}')
+            self.refuse('a goal', error)
             return GoalResponse.REJECT
-        self._done = Future()
         return GoalResponse.ACCEPT
+
+    def _accept(self, goal: Any) -> None:
+        """Run a goal whose caller knows of it; one who has gone in between keeps nobody out."""
+        self._done = Future()
+        goal.execute()
 
     def _cancel(self, _: Any) -> CancelResponse:
         """End the trial of the goal, if it has begun; else :meth:`_execute` does."""

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from blocks_planning.board.geometry import Mask
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.search.randomness import Generator, mask_words
+from blocks_planning.settings import shown
 from blocks_planning.subgoals.decision import Candidate
 
 
@@ -41,4 +42,4 @@ def check_lambda(lam: object, *, zero_allowed: bool) -> float:
         if least <= lam <= sys.float_info.max:
             return float(lam)
     bound = 'of 0 or more' if zero_allowed else 'above 0'
-    raise ConfigurationError(f'lambda must be a finite number {bound}, got {lam!r}')
+    raise ConfigurationError(f'lambda must be a finite number {bound}, got {shown(lam)}')

@@ -14,7 +14,7 @@ from blocks_planning.board.task import Task
 from blocks_planning.errors import InvalidInput, RecordError
 from blocks_planning.search.result import MAX_BUDGET, SolveStatus
 from blocks_planning.search.searches import make_search
-from blocks_planning.settings import setting_names
+from blocks_planning.settings import setting_names, shown
 from blocks_planning.subgoals.decision import Candidate, Decision, Subgoal
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind
 from blocks_planning.subgoals.registry import STRATEGIES, make_strategy
@@ -68,7 +68,7 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(found) < len(pairs):
         keys = [key for key, _ in pairs]
         doubled = next(key for key in keys if keys.count(key) > 1)
-        raise ValueError(f'key {doubled!r} stands twice')
+        raise ValueError(f'key {shown(doubled)} stands twice')
     return found
 
 
@@ -275,7 +275,7 @@ class _Fields:
         """Refuse keys that do not belong here, and sums that are not the sums of their parts."""
         for key in self.data:
             if key not in expected:
-                raise RecordError(f'{self.place}: unknown key {key!r}')
+                raise RecordError(f'{self.place}: unknown key {shown(key)}')
         # The name follows from much of the rest: what else is wrong says more.
         for key in sorted(self.data, key=lambda key: key == 'trial_id'):
             if not _same(self.data[key], expected[key]):

@@ -27,6 +27,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import product
+from math import prod
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -46,6 +47,7 @@ from blocks_planning.trials.spec import TrialSpec
 MAX_SEEDS = 1_000_000
 MAX_VALUES = 10_000
 MAX_PAUSE_S = 86_400
+MAX_PLANNERS = 100_000
 MAX_TRIALS = 10_000_000
 
 
@@ -166,6 +168,8 @@ def read_planners(listed: Located, make: Callable[[object, Mapping[str, Any]], A
         for key, value in entries.items():  # a key is judged where it stands
             value.check(partial(make, name.plain(), {key: _values(value)[0]}))
         ranges = [_values(value) for value in entries.values()]
+        if prod(map(len, ranges)) > MAX_PLANNERS:
+            raise item.fail(f'describes more than {MAX_PLANNERS} combinations of settings')
         for combination in product(*ranges):
             values = dict(zip(entries, combination, strict=True))
             things.append(item.check(partial(make, name.plain(), values)))
@@ -192,12 +196,15 @@ def read_whole(value: Located, name: str, least: int, most: int) -> int:
 
 def _number(value: Located) -> float:
     if isinstance(value.content, bool) or not isinstance(value.content, (int, float)):
-        raise value.fail(f'expected a number, got {value.plain()!r}')
-    return float(value.content)
+        raise value.fail(f'expected a number, got {value}')
+    try:
+        return float(value.content)
+    except OverflowError:
+        raise value.fail('expected a number, got one with hundreds of digits') from None
 
 
 def read_text(value: Located) -> str:
     """A text that is not empty."""
     if not isinstance(value.content, str) or not value.content:
-        raise value.fail(f'expected a text, got {value.plain()!r}')
+        raise value.fail(f'expected a text, got {value}')
     return value.content

@@ -21,6 +21,11 @@ from blocks_planning.trials.messages import (
     WorldState,
 )
 
+MOST_SOLVING = 512
+"""No planner asks so much at once; who asks more is not answered, and asks again."""
+MOST_KNOWN = 8192
+"""No trial needs so many answers; the oldest are solved again."""
+
 
 @dataclass(frozen=True)
 class Memory:
@@ -60,6 +65,8 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             return _solve(memory, trial_id, query)
         case SearchAnswer(_, query, result) if query not in memory.known:
             known, solving = {**memory.known, query: result}, memory.solving - {query}
+            if len(known) > MOST_KNOWN:
+                del known[next(iter(known))]
             return _act(replace(memory, known=known, solving=solving), only_for=query)
         case WorldState() if state is None or message.sequence > state.sequence:
             return _act(replace(memory, state=message))
@@ -71,7 +78,7 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
 
 
 def _solve(memory: Memory, trial_id: str, query: Query) -> tuple[Memory, tuple[Message, ...]]:
-    if query in memory.solving:
+    if query in memory.solving or len(memory.solving) >= MOST_SOLVING:
         return memory, ()
     return replace(memory, solving=memory.solving | {query}), (Solve(trial_id, query),)
 

@@ -67,7 +67,7 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             return Memory(), ()
         case WorldState() if state is None or message.sequence > state.sequence:
             return _go_on(replace(memory, state=message), trial.spec, message)
-        case SearchAnswer(_, query, result) if state is not None and query in memory.asked:
+        case SearchAnswer(_, query, result) if state is not None and _is_open(memory, query):
             known = {**memory.known, query: result}
             return _go_on(replace(memory, known=known), trial.spec, state)
         case ProposalMade(_, proposal) if _is_next(memory, trial.spec, proposal):
@@ -94,6 +94,11 @@ def reason_against(memory: Memory, proposal: Proposal) -> str:
     if is_new and proposal.kind is ProposalKind.BUILD and target == state.built:
         return 'region: expected a target cell that is still empty'
     return ''
+
+
+def _is_open(memory: Memory, query: Query) -> bool:
+    """Whether a query was asked and not answered; the first answer holds."""
+    return query in memory.asked and query not in memory.known
 
 
 def _is_next(memory: Memory, spec: TrialSpec, proposal: Proposal) -> bool:

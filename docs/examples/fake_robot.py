@@ -19,8 +19,9 @@ class FakeRobot(rclpy.node.Node):
         self.trial, self.order, self.placements = None, None, []
 
     def begin(self, trial):
-        """Clear the table for a trial."""
-        self.trial, self.order, self.placements = trial, None, []
+        """Clear the table for a trial; it may be announced again while it runs."""
+        if self.trial is None or self.trial.trial_id != trial.trial_id:
+            self.trial, self.order, self.placements = trial, None, []
         self.look()
 
     def place(self, order):

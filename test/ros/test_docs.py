@@ -16,8 +16,9 @@ MESSAGES = sorted((ROOT / 'msg_defs' / 'msg').glob('*.msg'))
 
 
 def row(first: str) -> list[str]:
-    """The cells of the row of a table that begins with a name."""
-    (found,) = re.findall(rf'^\| `{re.escape(first)}` \| (.*) \|$', PAGE, re.MULTILINE)
+    """The cells of the row of a table of topics that begins with a name."""
+    topics = PAGE.split('## Topics\n')[1].split('\n## ')[0]
+    (found,) = re.findall(rf'^\| `{re.escape(first)}` \| (.*) \|$', topics, re.MULTILINE)
     return [cell.strip() for cell in found.split(' | ')]
 
 

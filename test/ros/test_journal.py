@@ -9,7 +9,7 @@ from disks import disk_of
 
 from blocks_planning.board.blocks import Placed
 from blocks_planning.errors import RecordError
-from blocks_planning.ros.journal import Journal
+from blocks_planning.ros.journal import MOST_KEPT, Journal
 
 PLACEMENTS = [Placed(2, 1, 0, 0), Placed(1, 16, 15, 0), Placed(4, 2, 3, 14)]
 
@@ -128,11 +128,13 @@ def test_a_full_disk_leaves_the_journal_as_it_was(tmp_path: Path) -> None:
 
 def test_a_full_disk_begins_no_journal(tmp_path: Path) -> None:
     journal = Journal(tmp_path)
-    with disk_of(3), pytest.raises(RecordError, match='cannot be written'):
-        journal.begin('a')
-    with pytest.raises(RecordError, match='could not be opened when the trial began'):
-        journal.append(PLACEMENTS[0])
-    assert journal.begin('a') == ([], '')
+    with disk_of(3):
+        assert journal.begin('a') == ([], '')
+        with pytest.raises(RecordError, match='cannot be written'):
+            journal.append(PLACEMENTS[0])
+    journal.append(PLACEMENTS[0])
+    journal.release()
+    assert begin(tmp_path) == (PLACEMENTS[:1], '')
 
 
 def test_one_at_a_time_writes_in_a_folder(tmp_path: Path) -> None:
@@ -147,3 +149,25 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
     (tmp_path / 'file').write_text('')
     with pytest.raises(RecordError, match='cannot be written'):
         Journal(tmp_path / 'file' / 'journals')
+
+
+def test_every_trial_id_has_a_journal_of_its_own(tmp_path: Path) -> None:
+    for first, second in (('a/b', 'a_b'), ('x' * 250 + 'a', 'x' * 250 + 'b')):
+        journal = Journal(tmp_path)
+        journal.begin(first)
+        journal.append(PLACEMENTS[0])
+        assert journal.begin(second) == ([], '')
+        assert journal.begin(first) == (PLACEMENTS[:1], '')
+        journal.release()
+
+
+def test_trials_that_come_and_go_leave_no_heap_of_files(tmp_path: Path) -> None:
+    journal = Journal(tmp_path)
+    for number in range(100):
+        journal.begin(f'nothing was placed in {number}')
+    assert list(tmp_path.iterdir()) == []
+    for number in range(3 * MOST_KEPT):
+        journal.begin(str(number))
+        journal.append(PLACEMENTS[0])
+    assert len(list(tmp_path.iterdir())) <= MOST_KEPT + 1
+    assert journal.begin(str(3 * MOST_KEPT - 1)) == (PLACEMENTS[:1], '')

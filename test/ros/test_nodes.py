@@ -344,7 +344,8 @@ def test_warns_of_what_it_refuses(graph: Graph, capfd: pytest.CaptureFixture[str
     on.tell(started(TRIAL_SPEC))
     on.fence(ACTION)
     assert (
-        "refused a message on trial: trial_id: expected a name, got ''" in capfd.readouterr().err
+        "refused a message on trial: trial_id: expected a name of up to 200 characters, got ''"
+        in capfd.readouterr().err
     )
 
 

@@ -33,6 +33,7 @@ from blocks_planning.ros.conversions.trial import spec_to_ros
 from blocks_planning.ros.diagnostics import TOPIC, Health
 from blocks_planning.ros.graph import GRAPH, TRIAL_ORCHESTRATOR, WORLD
 from blocks_planning.ros.journal import Journal
+from blocks_planning.ros.marker_publisher import MarkerPublisher
 from blocks_planning.ros.peers import Attendance
 from blocks_planning.ros.processes import MOST_DEATHS, STABLE_S, NodeProcess
 from blocks_planning.ros.runtime import stood_still
@@ -131,6 +132,7 @@ def test_every_node_says_how_it_is(graph: Graph, tmp_path: Path) -> None:
         'subgoal_selector': graph.add(subgoal_selector.make_node),
         'action_searcher': graph.add(ActionSearcher),
         'bag_recorder': graph.add(BagRecorder, parameter_overrides=parameters),
+        'marker_publisher': graph.add(MarkerPublisher),
     }
     graph.spin_until(lambda: listener.of(nodes['world']))
     assert listener.of(nodes['world'])[0]['peers_missing'] == 'trial_orchestrator'

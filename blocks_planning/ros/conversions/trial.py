@@ -22,6 +22,9 @@ from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 
 _PLANNER_FIELDS = {'lambda': 'lambda_weight'}  # settings whose field has another name
+MAX_TRIAL_ID = 200
+MAX_STIMULUS = 4096
+"""No path is longer [characters]."""
 _ALL_SETTINGS = (
     'lambda',
     'commit',
@@ -57,6 +60,8 @@ def spec_from_ros(message: ros.TrialSpec) -> TrialSpec:
     library = tuple(
         block_from_ros(block, f'library[{index}]') for index, block in enumerate(message.library)
     )
+    if len(message.stimulus) > MAX_STIMULUS:
+        raise refuse('stimulus', message.stimulus, f'a name of up to {MAX_STIMULUS} characters')
     config = message.planner
     strategy = word(str, config.strategy, 'planner.strategy', STRATEGIES)
     search = word(str, config.search, 'planner.search', SEARCHES)
@@ -87,8 +92,8 @@ def started_to_ros(message: TrialStarted) -> ros.TrialSpec:
 
 def started_from_ros(message: ros.TrialSpec) -> TrialStarted:
     """See :class:`TrialStarted`."""
-    if not message.trial_id:
-        raise refuse('trial_id', message.trial_id, 'a name')
+    if not 1 <= len(message.trial_id) <= MAX_TRIAL_ID or not message.trial_id.isprintable():
+        raise refuse('trial_id', message.trial_id, f'a name of up to {MAX_TRIAL_ID} characters')
     return TrialStarted(message.trial_id, spec_from_ros(message))
 
 
