@@ -63,7 +63,7 @@ class Harness:
         self._observer = self._graph.add(Observer)
         self._subject: Subject
 
-    def run(self, per_script: int = 20, say: Callable[[str], None] = lambda _: None) -> Report:
+    def run(self, per_script: int = 32, say: Callable[[str], None] = lambda _: None) -> Report:
         """Run scripts of so many trials until all kills are done and there were enough trials.
 
         Args:

@@ -34,6 +34,7 @@ from blocks_planning.ros.diagnostics import TOPIC, Health
 from blocks_planning.ros.graph import GRAPH, TRIAL_ORCHESTRATOR, WORLD
 from blocks_planning.ros.journal import Journal
 from blocks_planning.ros.marker_publisher import MarkerPublisher
+from blocks_planning.ros.part_node import PartNode
 from blocks_planning.ros.peers import Attendance
 from blocks_planning.ros.processes import MOST_DEATHS, STABLE_S, NodeProcess
 from blocks_planning.ros.runtime import stood_still
@@ -91,6 +92,11 @@ def orchestrator(graph: Graph, folder: Path, *wait_for: str, **parameters: Any) 
             threading.Event(), parameter_overrides=overrides, **options
         )
     )
+
+
+def wait_for_peers(graph: Graph, node: PartNode, *names: str) -> None:
+    """Until a node sees some others; what it sees the next node of its context sees at once."""
+    graph.spin_until(lambda: not node.peers.missing(names))
 
 
 # Diagnostics
@@ -191,6 +197,7 @@ def test_trial_ends_when_a_peer_is_gone_for_too_long(
     script = write_script(tmp_path, seeds=3)
     listener = graph.add(Listener)
     peer = graph.add(Peer, SPEC, (), ())
+    wait_for_peers(graph, graph.add(world.make_node), 'peer')
     node = orchestrator(graph, tmp_path, 'peer', script=str(script))
     graph.spin_until(lambda: node.is_busy)
     graph.remove(peer)
@@ -225,10 +232,12 @@ def test_nobody_is_missing_while_a_person_thinks(graph: Graph, tmp_path: Path) -
     """However long that is."""
     script = write_script(tmp_path, strategies=[{'name': 'human'}])
     listener = graph.add(Listener)
-    for make_node in (world.make_node, subgoal_selector.make_node, ActionSearcher):
+    for make_node in (subgoal_selector.make_node, ActionSearcher):
         graph.add(make_node)
+    wait_for_peers(
+        graph, graph.add(world.make_node), 'world', 'subgoal_selector', 'action_searcher'
+    )
     node = orchestrator(graph, tmp_path, script=str(script), peer_timeout_s=0.1)
-    # As many have to be there at its start as later on.
     graph.spin_until(lambda: node.is_busy or node._stop.is_set())
     graph.spin_until(lambda: [said['state'] for said in listener.of(node)].count('building') > 2)
     assert listener.outcomes == []
