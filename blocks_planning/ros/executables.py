@@ -44,5 +44,10 @@ def bag_recorder() -> None:
     _start('bag_recorder')
 
 
+def trial_view() -> None:
+    """The page."""
+    _start('trial_view')
+
+
 if __name__ == '__main__':
     _start(sys.argv.pop(1))

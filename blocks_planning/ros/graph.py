@@ -41,6 +41,11 @@ ACTION_SEARCHER = NodeTopics(
 )
 TRIAL_ORCHESTRATOR = NodeTopics('trial_orchestrator', (STATE, SUBGOAL), (TRIAL, OUTCOME))
 BAG_RECORDER = NodeTopics('bag_recorder', TOPICS, ())
+TRIAL_VIEW = NodeTopics(
+    'trial_view',
+    (TRIAL, STATE, SEARCH_REQUEST, SEARCH_RESULT, PROPOSAL, SUBGOAL, OUTCOME),
+    (PROPOSAL,),
+)
 WATCHER = NodeTopics('watcher', (TRIAL, STATE, SUBGOAL, OUTCOME), ())
 
 GRAPH = {
@@ -51,6 +56,7 @@ GRAPH = {
         ACTION_SEARCHER,
         TRIAL_ORCHESTRATOR,
         BAG_RECORDER,
+        TRIAL_VIEW,
         WATCHER,
     )
 }

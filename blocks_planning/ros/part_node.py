@@ -100,6 +100,10 @@ class PartNode(Node):
         """Take note of the trial that runs."""
         self.trial = trial
 
+    def trial_named(self, trial_id: str) -> TrialStarted | None:
+        """The trial that a message belongs to; None if the message has to wait for it."""
+        return self.trial if self.trial and self.trial.trial_id == trial_id else None
+
     @property
     def board(self) -> Board:
         """The board of the trial that runs; there must be one."""
@@ -134,11 +138,11 @@ class PartNode(Node):
         try:
             if topic is TRIAL:
                 converted = topic.from_ros(message)
-            elif self.trial is None or message.trial_id != self.trial.trial_id:
+            elif (trial := self.trial_named(message.trial_id)) is None:
                 self._inbox.hold(message.trial_id, (topic, message))
                 return
             elif topic.needs_board:
-                converted = topic.from_ros(self.board, message)
+                converted = topic.from_ros(trial.spec.task.board, message)
             else:
                 converted = topic.from_ros(message)
         except InvalidInput as error:

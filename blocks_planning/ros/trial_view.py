@@ -1,0 +1,157 @@
+"""Node ``trial_view``: a page that shows what happens, and on which a person scopes.
+
+It listens to the graph and puts what there is to see into a mailbox; a server in a thread of its
+own shows it (:mod:`blocks_planning.view.web`). What a person proposes on the page is judged here,
+by what this node knows, and said if it can be taken.
+
+| | |
+|---|---|
+| listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched), `search/request`, `search/result` (stream) |
+| says | `subgoal/proposal` (latched) |
+| hears too | `/diagnostics` of the nodes in its namespace |
+| parameters | `remind_period_s`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none |
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+from concurrent.futures import Future
+from pathlib import Path
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+
+from blocks_planning.errors import InvalidInput
+from blocks_planning.ros import qos
+from blocks_planning.ros.graph import TRIAL_VIEW
+from blocks_planning.ros.parameters import Parameter
+from blocks_planning.ros.part_node import PartNode
+from blocks_planning.ros.processes import PARENT_VARIABLE
+from blocks_planning.ros.runtime import run
+from blocks_planning.trials.messages import Message, TrialStarted
+from blocks_planning.trials.script import read_script
+from blocks_planning.view.web import session
+from blocks_planning.view.web.frame import Seen
+from blocks_planning.view.web.guards import address_of
+from blocks_planning.view.web.health import NOTHING, health_after
+from blocks_planning.view.web.proposing import Posted, Refused, judge, parse
+from blocks_planning.view.web.queue import Queue
+from blocks_planning.view.web.server import Mailbox, PageServer
+
+HOST = Parameter('host', '127.0.0.1', 'Name or number to listen at; a token off this machine.')
+PORT = Parameter('port', 0, 'Port to listen at; 0: any that is free.', (0, 65535))
+TOKEN = Parameter('token', '', 'What who looks must know; none: of the environment, or a new one.')
+SCRIPT = Parameter(
+    'script', '', 'The trial script that runs, to count its trials; none: no count.'
+)
+PARAMETERS = (HOST, PORT, TOKEN, SCRIPT)
+TOKEN_VARIABLE = 'BLOCKS_PLANNING_VIEW_TOKEN'
+"""A token in a process's arguments could be read by everybody on the machine."""
+DIAGNOSTICS = '/diagnostics'
+
+
+class TrialView(PartNode):
+    """A session that is watched, with a server that shows it."""
+
+    def __init__(self, **options: Any) -> None:
+        """See :class:`PartNode`.
+
+        Raises:
+            ConfigurationError: also if the page can't be served there.
+        """
+        super().__init__(TRIAL_VIEW, session, PARAMETERS, **options)
+        script = self.values['script']
+        self._queue = Queue(read_script(Path(script)) if script else ())
+        self._health = NOTHING
+        self._place = self._queue.place_of(None)
+        self._posted: deque[tuple[Any, Future[Refused | None]]] = deque()
+        self._wake = self.create_guard_condition(self._take_posted)
+        self._mailbox = Mailbox()
+        self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._take_health, qos.stream())
+        token = self.values['token'] or os.environ.get(TOKEN_VARIABLE, '')
+        address = address_of(self.values['host'], self.values['port'], token)
+        self.page = PageServer(address, self._mailbox, self._post)
+        self._show()
+        self.page.start()
+        if PARENT_VARIABLE not in os.environ:  # else who started this process says it
+            self.get_logger().info(f'the page is at {self.page.address.url}')
+
+    def trial_named(self, trial_id: str) -> TrialStarted | None:
+        """See :class:`PartNode`; news of the trials just before are welcome too."""
+        known: session.Session = self.memory
+        return known.trial_named(trial_id)
+
+    def take(self, message: Message) -> None:
+        """See :class:`PartNode`."""
+        before = self.memory
+        super().take(message)
+        if self.memory is not before:
+            if self.memory.trial_id != before.trial_id:
+                self._place = self._queue.place_of(self.memory.trial_id)
+            self._show()
+
+    def _show(self) -> None:
+        self._mailbox.put(Seen(self.memory, self._health, self._place))
+
+    def _take_health(self, message: DiagnosticArray) -> None:
+        """What a node of this graph says of itself."""
+        space = self.get_namespace().rstrip('/') + '/'
+        for status in message.status:
+            if status.name.startswith(space):
+                self._health = health_after(
+                    self._health,
+                    status.name.removeprefix(space),
+                    int.from_bytes(status.level, 'little'),
+                    status.message,
+                    ((value.key, value.value) for value in status.values),
+                    time.monotonic(),
+                )
+        self._show()
+
+    def _post(self, data: Any) -> Future[Refused | None]:
+        """From the thread of the server: what a person has sent, to be judged in the node's own."""
+        answer: Future[Refused | None] = Future()
+        self._posted.append((data, answer))
+        self._wake.trigger()
+        return answer
+
+    def _take_posted(self) -> None:
+        while self._posted:
+            data, answer = self._posted.popleft()
+            if answer.set_running_or_notify_cancel():
+                try:
+                    answer.set_result(self._propose(data))
+                except InvalidInput as error:
+                    answer.set_exception(error)
+
+    def _propose(self, data: Any) -> Refused | None:
+        """Say a proposal, if it can be taken; else why not."""
+        if self.trial is None:
+            return Refused('stale', 'no trial has begun')
+        posted = parse(data, self.board)
+        refused = judge(self.memory, posted)
+        if refused is None:
+            self._say_posted(posted)
+        return refused
+
+    def _say_posted(self, posted: Posted) -> None:
+        self.say(posted.said)
+        self.take(posted.said)
+        if posted.is_again:
+            self.memory = session.with_told_again(self.memory)
+            self._show()
+
+    def finish(self) -> None:
+        """Before the node is gone: tell the browsers that this was all."""
+        self.page.stop()
+
+
+def main() -> None:
+    """Run the node until SIGINT or SIGTERM."""
+    run(lambda _: TrialView())
+
+
+if __name__ == '__main__':
+    main()
