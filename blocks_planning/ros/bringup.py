@@ -163,6 +163,8 @@ class Bringup:
                 self._keep_alive()
         finally:
             stop_all(self._processes)
+            if self._port is not None:
+                self._port.release()
             executor.shutdown(timeout_sec=_SPIN_S)
             for number, handler in before.items():
                 signal.signal(number, handler)

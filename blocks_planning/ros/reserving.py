@@ -21,12 +21,7 @@ class ReservedPort:
             ConfigurationError: if the host is no address of this machine, or the port is taken.
         """
         try:
-            family, kind, protocol, _, place = socket.getaddrinfo(
-                host, port, type=socket.SOCK_STREAM
-            )[0]
-            self._socket = socket.socket(family, kind, protocol)
-            self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            self._socket.bind(place)
+            self._socket = _bound(host, port)
         except OSError as error:
             raise ConfigurationError(
                 f'the page cannot be served at {host}:{port}: {error.strerror}'
@@ -36,3 +31,15 @@ class ReservedPort:
     def release(self) -> None:
         """Let others have it."""
         self._socket.close()
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    family, kind, protocol, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    made = socket.socket(family, kind, protocol)
+    try:
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        made.bind(place)
+    except OSError:
+        made.close()
+        raise
+    return made

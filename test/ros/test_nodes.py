@@ -50,6 +50,7 @@ from blocks_planning.ros.topics import (
     TRIAL,
 )
 from blocks_planning.ros.trial_orchestrator import TrialOrchestrator
+from blocks_planning.ros.trial_view import TrialView
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
@@ -513,6 +514,7 @@ def make(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, graph: Graph) -> Calla
         **dict(zip(PART_IDS, (make_node for _, make_node in PARTS), strict=True)),
         'trial_orchestrator': lambda **options: TrialOrchestrator(threading.Event(), **options),
         'bag_recorder': BagRecorder,
+        'trial_view': TrialView,
     }
 
     def call(name: str, **parameters: Any) -> Any:
@@ -593,6 +595,8 @@ def test_parameters_of_a_wrong_type_or_value_are_refused(
         ('action_searcher', 'workers:=many', 'parameter workers must be'),
         ('trial_orchestrator', 'script:=nowhere.yaml', 'nowhere.yaml: cannot be read'),
         ('bag_recorder', 'flush_period_s:=1e9', 'parameter flush_period_s must be'),
+        ('trial_view', 'host:=nowhere.invalid', 'cannot be served at nowhere.invalid:0: '),
+        ('trial_view', 'token:=short', 'token must be 16 or more letters'),
     ],
 )
 def test_process_with_bad_parameters_ends_with_one_line(

@@ -101,7 +101,7 @@ def step_json(scene: Scene, hidden: bool) -> Json:
     record, board = scene.record, scene.task.board
     step: Json = {
         'blocks': len(scene.placements),
-        'decision': len(record.decisions) - 1,
+        'entry': len(record.decisions) - 1,
         'subgoals': record.subgoals,
         'status': scene.status.value,
         'word': captions.STATUS_WORDS[scene.status],
@@ -115,10 +115,10 @@ def step_json(scene: Scene, hidden: bool) -> Json:
         planned = scene.subgoal.placements[: scene.subgoal.execute]
         step['region'] = rows_of(board, scene.region) if scene.region else None
         step['planned'] = [list(placed) for placed in planned[max(done, 0) :][:MOST_PLANNED]]
-        step['height'] = scene.subgoal.height
+        step['height'] = scene.subgoal.height if scene.region else None
     if not hidden:
-        step['action'] = record.action_planning_cost
-        step['subgoal'] = record.subgoal_planning_cost
+        step['action_cost'] = record.action_planning_cost
+        step['subgoal_cost'] = record.subgoal_planning_cost
     return step
 
 
@@ -161,8 +161,8 @@ def summary_json(past: Past, hidden: bool) -> Json:
         else captions.STATUS_WORDS[record.status],
         'blocks': record.blocks,
         'subgoals': record.subgoals,
-        'action': None if hidden else record.action_planning_cost,
-        'subgoal': None if hidden else record.subgoal_planning_cost,
+        'action_cost': None if hidden else record.action_planning_cost,
+        'subgoal_cost': None if hidden else record.subgoal_planning_cost,
     }
 
 

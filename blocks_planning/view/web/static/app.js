@@ -3,7 +3,7 @@
 import { Board } from './board.js';
 import { Costs, hideCosts, showSearching } from './costs.js';
 import { showDecision } from './decision.js';
-import { byId, counted, say } from './dom.js';
+import { byId, counted, nameOf, say } from './dom.js';
 import { showHealth } from './health.js';
 import { Link } from './net.js';
 import { Person } from './person.js';
@@ -51,11 +51,13 @@ function draw() {
 /** A moment of a trial, live or replayed. */
 function showView(view) {
   const { trial, step } = view;
-  say(byId('tower-name'), trial.stimulus);
-  say(byId('planner'), `${trial.strategy}; search ${trial.search}; seed ${trial.seed}`);
+  say(byId('tower-name'), nameOf(trial.stimulus));
+  byId('tower-name').title = trial.stimulus;
+  const planner = trial.person ? 'A person chooses what is built next' : trial.strategy;
+  say(byId('planner'), `${planner}; search ${trial.search}; seed ${trial.seed}`);
   const status = byId('status');
   status.hidden = false;
-  const rows = step.status === 'building' && step.height !== null ? ` up to row ${step.height}` : '';
+  const rows = step.region !== null && step.height !== null ? ` up to row ${step.height}` : '';
   say(status, `${step.word}${rows} · ${counted(step.blocks, 'block')}`);
   status.dataset.outcome = step.status === 'success' ? 'success' : step.status === 'building' ? 'none' : 'failed';
   board.show(view);

@@ -40,7 +40,7 @@ export class Board {
     const gutter = svg('g', { class: 'gutter' });
     for (let row = 1; row <= height; row += 1) {
       const y = height - row;
-      const label = svg('text', { class: 'row-label', x: -0.32, y: y + 0.5 }, String(row));
+      const label = svg('text', { class: 'row-label', x: -0.54, y: y + 0.5 }, String(row));
       this.labels.push(label);
       gutter.append(
         svg('rect', { class: 'row-chip', x: -0.92, y: y + 0.14, width: 0.76, height: 0.72, rx: 0.16 }),

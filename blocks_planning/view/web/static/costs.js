@@ -16,7 +16,7 @@ export class Costs {
   show(step, curve) {
     this.shown = [step, curve];
     for (const name of ['action', 'subgoal']) {
-      const cost = step[name];
+      const cost = step[`${name}_cost`];
       const text = cost === undefined ? '–' : whole(cost);
       const place = byId(`cost-${name}`);
       if (place.dataset.shown !== text) {

@@ -32,14 +32,16 @@ function table(candidates, lambda) {
     html('th', { scope: 'col' }, 'rows'),
     html('th', { scope: 'col', class: 'number', title: 'r: cells that it adds' }, 'cells'),
     html('th', { scope: 'col', class: 'number wide', title: 'c: states evaluated' }, 'cost'),
-    weighed ? html('th', { scope: 'col', class: 'number', title: 'V = r − λc' }, 'value') : null,
+    weighed ? html('th', { scope: 'col', class: 'number', title: 'V = r − λc' }, 'value')
+      : html('th', { scope: 'col' }, 'answer'),
     html('th', { scope: 'col', class: 'bar' }, weighed ? 'cells − λ cost' : 'cost, log scale'));
   const rows = candidates.map((one) => html('tr', { 'data-chosen': one.chosen },
     html('th', { scope: 'row' }, label(one),
       one.chosen ? html('span', { class: 'visually-hidden' }, ' (chosen)') : null),
     html('td', { class: 'number' }, whole(one.cells)),
     html('td', { class: 'number wide' }, whole(one.cost)),
-    weighed ? html('td', { class: 'number' }, one.value === null ? '–' : worth(one.value)) : null,
+    weighed ? html('td', { class: 'number' }, one.value === null ? '–' : worth(one.value))
+      : html('td', {}, one.status),
     html('td', { class: 'bar' },
       weighed ? tradeOff(one, lambda ?? 0, most, least) : costBar(one, dearest))));
   return html('table', {}, html('thead', {}, head), html('tbody', {}, ...rows));

@@ -28,6 +28,11 @@ export function say(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
+/** A tower by its name; of a file somewhere on the machine only the end. */
+export function nameOf(stimulus) {
+  return stimulus.startsWith('/') ? stimulus.split('/').slice(-2).join('/') : stimulus;
+}
+
 export function whole(number) {
   return number.toLocaleString('en-US');
 }

@@ -23,6 +23,7 @@ export class Drawing {
     place.addEventListener('pointerup', (event) => this.#onUp(event));
     place.addEventListener('pointercancel', () => this.#cancel());
     place.addEventListener('keydown', (event) => this.#onKey(event));
+    place.addEventListener('blur', () => place.classList.remove('pointing'));
   }
 
   turn(isOn) {
@@ -103,6 +104,7 @@ export class Drawing {
     const { width } = this.board.trial;
     if (x < -1.05 || x > width + 0.6) return;
     event.preventDefault();
+    this.board.place.classList.add('pointing');
     this.board.place.focus({ preventScroll: true });
     this.#begin(event);
     this.anchor = null;
@@ -136,6 +138,7 @@ export class Drawing {
 
   #onKey(event) {
     if (!this.isOn || event.altKey || event.ctrlKey || event.metaKey) return;
+    this.board.place.classList.remove('pointing');
     const { width, height } = this.board.trial;
     const [column, row] = this.cursor;
     const move = {

@@ -5,8 +5,6 @@ import { byId, counted, html, say, svg, whenNew } from './dom.js';
 import { Drawing } from './drawing.js';
 import { propose } from './net.js';
 
-const TOLD = 'blocks_planning/told';
-
 export class Person {
   constructor(board) {
     this.board = board;
@@ -15,6 +13,7 @@ export class Person {
     this.shownAt = 0;
     this.isSending = false;
     this.notice = null;
+    this.told = []; // what was taken, in the state that it is about
     this.showBlocks = whenNew((library) => this.#showBlocks(library));
     this.showSaid = whenNew((said) => this.#showSaid(said));
     byId('confirm').addEventListener('click', () => this.#confirm());
@@ -37,6 +36,7 @@ export class Person {
 
   /** A frame, and whether the tower of that frame is what is seen now. */
   show(frame, isSeen) {
+    if (frame.kind === 'over') this.told = []; // the next session is another one
     const isPerson = frame.trial?.person === true;
     byId('person').hidden = !isPerson || !isSeen;
     if (!isPerson || !isSeen) {
@@ -44,7 +44,7 @@ export class Person {
       return;
     }
     this.frame = frame;
-    const { trial, turn } = frame;
+    const { trial } = frame;
     byId('participant').hidden = trial.participant === '';
     say(byId('participant'), `participant ${trial.participant}`);
     this.showBlocks(trial.library);
@@ -54,10 +54,7 @@ export class Person {
     say(byId('person-title'), this.#title(frame));
     byId('ask').hidden = !isMine;
     this.drawing.turn(isMine);
-    if (isMine) {
-      this.drawing.draw();
-      this.#tellAgain(turn);
-    }
+    if (isMine) this.drawing.draw();
     this.#enable();
     this.#answer(frame);
   }
@@ -76,10 +73,18 @@ export class Person {
     }
     const key = keyOf(frame);
     if (this.turn?.key === key) return;
+    const untold = this.told.filter((one) => one.trial_id === frame.trial.id
+      && one.sequence === turn.sequence && one.number >= turn.number);
+    if (untold.length > 0) {
+      this.#tellAgain(untold);
+      return;
+    }
+    const isSameState = this.state === stateOf(frame);
+    this.state = stateOf(frame);
     this.turn = { ...turn, key, trial_id: frame.trial.id };
     this.notice = null;
     this.shownAt = performance.now();
-    this.drawing.clear();
+    if (!isSameState) this.drawing.clear();
   }
 
   #counts() {
@@ -139,19 +144,23 @@ export class Person {
     const refused = await propose(proposal);
     this.isSending = false;
     this.notice = refused === null ? null : `Not taken: ${refused}.`;
-    if (refused === null) remember(proposal);
-    this.#preview();
+    if (refused === null) {
+      this.#remember(proposal);
+      this.drawing.clear();
+    } else this.#preview();
+  }
+
+  #remember(proposal) {
+    this.told = [...this.told.filter((one) => one.trial_id === proposal.trial_id
+      && one.sequence === proposal.sequence), proposal];
   }
 
   /** A server that was started anew must hear again what was said in this state. */
-  async #tellAgain(turn) {
-    const told = remembered();
-    const mine = told.filter((one) => one.trial_id === this.turn.trial_id
-      && one.sequence === turn.sequence && one.number >= turn.number);
-    if (mine.length === 0 || this.isSending) return;
+  async #tellAgain(untold) {
+    if (this.isSending) return;
     this.isSending = true;
-    for (const one of mine) {
-      if (await propose({ ...one, again: true }) !== null) break; // eslint-disable-line no-await-in-loop
+    for (const one of untold) {
+      if (await propose({ ...one, again: true }) !== null) break;
     }
     this.isSending = false;
   }
@@ -201,20 +210,5 @@ function cost(one) {
   return one.cost === undefined ? '' : `, ${counted(one.cost, 'state')} evaluated`;
 }
 
-const keyOf = (frame) => `${frame.trial.id}/${frame.turn.sequence}/${frame.turn.number}`;
-
-function remembered() {
-  try {
-    return JSON.parse(sessionStorage.getItem(TOLD)) ?? [];
-  } catch {
-    return [];
-  }
-}
-
-function remember(proposal) {
-  const same = remembered().filter((one) => one.trial_id === proposal.trial_id
-    && one.sequence === proposal.sequence && one.number < proposal.number);
-  try {
-    sessionStorage.setItem(TOLD, JSON.stringify([...same, proposal]));
-  } catch { /* without a store nothing can be told again */ }
-}
+const stateOf = (frame) => `${frame.trial.id}/${frame.turn.sequence}`;
+const keyOf = (frame) => `${stateOf(frame)}/${frame.turn.number}`;

@@ -70,8 +70,8 @@ export class Replay {
     this.onStep({
       ...trial,
       step,
-      decision: step.decision < 0 ? null : trial.decisions[step.decision] ?? null,
-      curve: trial.curve.slice(0, step.decision + 1),
+      decision: step.entry < 0 ? null : trial.decisions[step.entry] ?? null,
+      curve: trial.curve.slice(0, step.entry + 1),
     });
   }
 

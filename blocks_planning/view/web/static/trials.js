@@ -1,7 +1,7 @@
 // The trials of the session: the one that runs, those that come, those that ran. What ran is
 // fetched bit by bit, so that it can be replayed when the server is gone.
 
-import { byId, counted, html, say, whenNew, whole } from './dom.js';
+import { byId, counted, html, nameOf, say, whenNew, whole } from './dom.js';
 import { fetchFrom } from './net.js';
 
 const MOST_KEPT = 500;
@@ -114,14 +114,14 @@ export class Trials {
     const of = total ? ` of ${whole(total)}` : '';
     const done = total ? Math.max(past, index === null ? 0 : index + (phase === 'between' ? 1 : 0)) : past;
     const text = stimulus === null ? 'Waiting for the first trial'
-      : `Trial ${whole(number)}${of}: ${stimulus}`;
+      : `Trial ${whole(number)}${of}: ${nameOf(stimulus)}`;
     say(byId('progress-text'), text);
     const bar = byId('progress-bar');
     bar.hidden = !total;
     bar.max = total || 1;
     bar.value = Math.min(done, total);
     say(byId('queue-text'), total ? `${whole(done)} of ${whole(total)} done` : `${counted(past, 'trial')} done`);
-    const names = coming.map((one) => one.stimulus);
+    const names = coming.map((one) => nameOf(one.stimulus));
     const more = total && index !== null ? total - index - 1 - names.length : 0;
     say(byId('coming'), names.length === 0 ? ''
       : `Next: ${names.join(', ')}${more > 0 ? ` and ${whole(more)} more` : ''}`);
@@ -142,18 +142,18 @@ export class Trials {
       html('th', { scope: 'col' }, html('span', { class: 'visually-hidden' }, 'replay')));
     const rows = all.slice(0, this.visible).map((one) => {
       const button = html('button', {
-        type: 'button', class: 'small', 'aria-label': `Replay trial ${one.number + 1}, ${one.stimulus}`,
+        type: 'button', class: 'small', 'aria-label': `Replay trial ${one.number + 1}, ${nameOf(one.stimulus)}`,
       }, 'Replay');
       button.addEventListener('click', () => this.replay(one.number));
       const outcome = one.status === 'success' ? 'success' : one.status === 'building' ? 'none' : 'failed';
       return html('tr', { 'data-shown': one.number === this.shown, 'data-number': one.number },
         html('td', {}, whole(one.number + 1)),
-        html('th', { scope: 'row' }, one.stimulus,
+        html('th', { scope: 'row', title: one.stimulus }, nameOf(one.stimulus),
           html('span', { class: 'planner' }, `${one.strategy}; ${one.search}`)),
         html('td', { class: 'outcome', 'data-outcome': outcome }, `${SIGNS[one.status] ?? '✗'} ${one.word}`),
         html('td', { class: 'number' }, whole(one.blocks)),
-        html('td', wide({ class: 'number' }), one.action === null ? '–' : whole(one.action)),
-        html('td', wide({ class: 'number' }), one.subgoal === null ? '–' : whole(one.subgoal)),
+        html('td', wide({ class: 'number' }), one.action_cost === null ? '–' : whole(one.action_cost)),
+        html('td', wide({ class: 'number' }), one.subgoal_cost === null ? '–' : whole(one.subgoal_cost)),
         html('td', { class: 'number' }, button));
     });
     const focused = document.activeElement?.closest?.('#past tr')?.dataset.number;
