@@ -43,7 +43,7 @@ TRIAL_ORCHESTRATOR = NodeTopics('trial_orchestrator', (STATE, SUBGOAL), (TRIAL, 
 BAG_RECORDER = NodeTopics('bag_recorder', TOPICS, ())
 TRIAL_VIEW = NodeTopics(
     'trial_view',
-    (TRIAL, STATE, SEARCH_REQUEST, SEARCH_RESULT, PROPOSAL, SUBGOAL, OUTCOME),
+    (TRIAL, STATE, SEARCH_RESULT, PROPOSAL, SUBGOAL, OUTCOME),
     (PROPOSAL,),
 )
 WATCHER = NodeTopics('watcher', (TRIAL, STATE, SUBGOAL, OUTCOME), ())

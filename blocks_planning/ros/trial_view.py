@@ -6,7 +6,7 @@ by what this node knows, and said if it can be taken.
 
 | | |
 |---|---|
-| listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched), `search/request`, `search/result` (stream) |
+| listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched), `search/result` (stream) |
 | says | `subgoal/proposal` (latched) |
 | hears too | `/diagnostics` of the nodes in its namespace |
 | parameters | `remind_period_s`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none |
@@ -30,6 +30,8 @@ from blocks_planning.ros.parameters import Parameter
 from blocks_planning.ros.part_node import PartNode
 from blocks_planning.ros.processes import PARENT_VARIABLE
 from blocks_planning.ros.runtime import run
+from blocks_planning.ros.topics import SEARCH_RESULT, Topic
+from blocks_planning.subgoals.human import Human
 from blocks_planning.trials.messages import Message, TrialStarted
 from blocks_planning.trials.script import read_script
 from blocks_planning.view.web import session
@@ -50,6 +52,7 @@ PARAMETERS = (HOST, PORT, TOKEN, SCRIPT)
 TOKEN_VARIABLE = 'BLOCKS_PLANNING_VIEW_TOKEN'
 """A token in a process's arguments could be read by everybody on the machine."""
 DIAGNOSTICS = '/diagnostics'
+NICENESS = 10
 
 
 class TrialView(PartNode):
@@ -82,6 +85,14 @@ class TrialView(PartNode):
         """See :class:`PartNode`; news of the trials just before are welcome too."""
         known: session.Session = self.memory
         return known.trial_named(trial_id)
+
+    def _receive(self, topic: Topic, message: Any) -> None:
+        """See :class:`PartNode`; answers that no person waits for are left alone: they are many."""
+        if topic is SEARCH_RESULT:
+            trial = self.trial_named(message.trial_id)
+            if trial is not None and not isinstance(trial.spec.strategy, Human):
+                return
+        super()._receive(topic, message)
 
     def take(self, message: Message) -> None:
         """See :class:`PartNode`."""
@@ -149,7 +160,8 @@ class TrialView(PartNode):
 
 
 def main() -> None:
-    """Run the node until SIGINT or SIGTERM."""
+    """Run the node until SIGINT or SIGTERM; what is shown goes before showing it."""
+    os.nice(NICENESS)
     run(lambda _: TrialView())
 
 

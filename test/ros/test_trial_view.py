@@ -32,7 +32,7 @@ from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
-    SearchRequest,
+    SearchAnswer,
     TrialEnded,
     TrialStarted,
     WorldState,
@@ -70,9 +70,15 @@ def bench(graph: Graph, trial: Any = SCOPED, **parameters: Any) -> ViewBench:
 
 def tell_all(on: Bench, trial: Any) -> None:
     """Say a whole trial."""
-    on.tell(*(message for message in heard(trial) if not isinstance(message, TrialEnded)))
+    on.tell(*visible(trial))
     end(on, trial)
     on.graph.spin_until(lambda: on.node.memory.past)
+
+
+def visible(trial: Any) -> list[Message]:
+    """What the node takes note of, but the end."""
+    aside = (SearchAnswer, TrialEnded)
+    return [message for message in heard(trial) if not isinstance(message, aside)]
 
 
 def end(on: Bench, trial: Any) -> None:
@@ -182,7 +188,7 @@ def test_news_of_the_trial_before_are_welcome(graph: Graph) -> None:
     """Topics are not ordered among each other."""
     on = bench(graph)
     other = replace(SCOPED, seed=1)
-    messages = [m for m in heard(SCOPED) if not isinstance(m, TrialEnded)]
+    messages = visible(SCOPED)
     late = [m for m in messages if isinstance(m, WorldState)][-1]
     messages.remove(late)
     on.tell(*messages, TrialStarted(other.trial_id, other))
@@ -194,8 +200,8 @@ def test_news_of_the_trial_before_are_welcome(graph: Graph) -> None:
 
 
 def test_refuses_what_can_not_be(graph: Graph) -> None:
-    on = bench(graph)
-    on.tell(*heard(SCOPED)[:2])
+    on = bench(graph, BY_PERSON)
+    on.tell(*heard(BY_PERSON, SEAT)[:2])
     before = on.node.memory
     on.fence(STATE)
     on.fence(SEARCH_RESULT)
@@ -279,9 +285,12 @@ def test_a_reserved_port_is_for_who_is_told() -> None:
     reserved.release()
 
 
-def test_requests_for_queries_are_counted(graph: Graph) -> None:
+def test_answers_that_no_person_waits_for_are_left_alone(graph: Graph) -> None:
+    """They are many, and nothing that is shown depends on them."""
     on = bench(graph)
-    messages = heard(SCOPED)
-    asked = [m for m in messages if isinstance(m, SearchRequest)]
-    on.tell(*messages[:2], asked[0])
-    assert (on.node.memory.asked, on.node.memory.answered) == (1, 0)
+    on.tell(*heard(SCOPED)[:2])
+    answers = [m for m in heard(SCOPED) if isinstance(m, SearchAnswer)]
+    for answer in answers:
+        on.peer.say(answer)
+    on.fence(STATE)
+    assert on.node.memory.answers == {}

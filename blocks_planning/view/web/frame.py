@@ -70,7 +70,6 @@ def frame_json(seen: Seen, now_s: float) -> Json:
         else pictures.decision_json(scene.decision, hidden),
         'curve': pictures.curve_json(scene.record, hidden),
         'step': pictures.step_json(scene, hidden),
-        'searching': None if hidden else [session.answered, session.asked],
         'turn': _turn_json(turn_of(session)),
         'proposals': _proposals_json(session, scene, hidden),
     }

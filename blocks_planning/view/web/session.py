@@ -25,8 +25,6 @@ from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
     SearchAnswer,
-    SearchRequest,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
@@ -75,8 +73,6 @@ class Session:
         scene: the trial that runs, or was the last to run; None before the first.
         state: the latest of that trial.
         past: the last trials that ran, the oldest first.
-        asked: queries since the last decision.
-        answered: how many of them were answered.
         answers: to the queries of a person's proposals.
         proposals: of a person in that trial, in the order of their numbers in every state.
         told_again: how many proposals of the current state were known before this session.
@@ -85,8 +81,6 @@ class Session:
     scene: Scene | None = None
     state: WorldState | None = None
     past: tuple[Past, ...] = ()
-    asked: int = 0
-    answered: int = 0
     answers: Mapping[Query, SolveResult] = field(default_factory=dict)
     proposals: tuple[Proposal, ...] = ()
     told_again: int = 0
@@ -125,21 +119,20 @@ def session_after(session: Session, message: Message) -> Session:
             return Session(Scene(message), past=_closed(session).past)
         return replace(session, past=_past_after(session.past, message))
     match message:
-        case SearchRequest():
-            return replace(session, asked=session.asked + 1)
         case SearchAnswer():
             return _answered(session, scene.spec, message)
         case ProposalMade(_, proposal):
             return _proposed(session, scene.spec, proposal)
     after = scene_after(scene, message)
-    if isinstance(message, WorldState):
-        if session.state is None or message.sequence > session.state.sequence:
-            session = replace(session, state=message, told_again=0)
-    elif isinstance(message, SubgoalChosen) and after is not scene:
-        session = replace(session, asked=0, answered=0)
+    if isinstance(message, WorldState) and _is_later(message, session.state):
+        session = replace(session, state=message, told_again=0)
     if after is not scene:
         session = replace(session, scene=after, past=_past_after(session.past, message))
     return _closed(session) if isinstance(message, TrialEnded) else session
+
+
+def _is_later(state: WorldState, than: WorldState | None) -> bool:
+    return than is None or state.sequence > than.sequence
 
 
 def _closed(session: Session) -> Session:
@@ -184,7 +177,6 @@ def _trimmed(scene: Scene) -> Scene:
 
 
 def _answered(session: Session, spec: TrialSpec, message: SearchAnswer) -> Session:
-    session = replace(session, answered=session.answered + 1)
     if not isinstance(spec.strategy, Human):
         return session
     return replace(session, answers={**session.answers, message.query: message.result})

@@ -210,7 +210,11 @@ def test_frames_are_dropped_and_never_queued(
         count += 1
         if count > 300:
             made.set()
-        return {**frame_json(seen, now_s), 'number': seen.session.asked, 'padding': 'x' * 100_000}
+        return {
+            **frame_json(seen, now_s),
+            'number': seen.session.told_again,
+            'padding': 'x' * 100_000,
+        }
 
     monkeypatch.setattr(module, 'frame_json', padded)
 
@@ -222,7 +226,7 @@ def test_frames_are_dropped_and_never_queued(
             live._reader._protocol.pause_reading()
             while not made.is_set():
                 number += 1
-                served.mailbox.put(Seen(replace(Session(), asked=number)))
+                served.mailbox.put(Seen(replace(Session(), told_again=number)))
                 await asyncio.sleep(0.001)
             live._reader._protocol.resume_reading()
             read = 1

@@ -105,13 +105,6 @@ def test_candidates_of_what_ran_are_bounded(
     assert last_scene(kept).built == last_scene(scoped.record).built
 
 
-def test_queries_are_counted_until_the_decision(scoped: Heard) -> None:
-    first = next(i for i, m in enumerate(scoped.messages) if isinstance(m, SubgoalChosen))
-    before = after(scoped.messages[:first])
-    assert before.asked == before.answered > 0
-    assert (after(scoped.messages[: first + 1]).asked, before.answers) == (0, {})
-
-
 # The person
 
 

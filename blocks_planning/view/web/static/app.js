@@ -1,7 +1,7 @@
 // The page: frames come in, the latest is drawn when the browser has time for it.
 
 import { Board } from './board.js';
-import { Costs, hideCosts, showSearching } from './costs.js';
+import { Costs, hideCosts, showDeciding } from './costs.js';
 import { showDecision } from './decision.js';
 import { byId, counted, nameOf, say } from './dom.js';
 import { showHealth } from './health.js';
@@ -42,7 +42,7 @@ function draw() {
   if (!replay.isOn) {
     showMode('live');
     showView(frame);
-    showSearching(frame.searching);
+    showDeciding(frame.phase === 'running' && frame.step.region === null && !frame.trial.person);
     showBetween(frame);
   }
   person.show(frame, !replay.isOn);
@@ -71,7 +71,7 @@ function showView(view) {
 function showReplay(view) {
   showMode('replay', `replay of trial ${view.number + 1}`);
   byId('between').hidden = true;
-  showSearching(null);
+  showDeciding(false);
   showView(view);
   person.show(latest, false);
 }

@@ -73,7 +73,7 @@ export function hideCosts(hidden) {
   byId('decision').hidden = hidden;
 }
 
-export function showSearching(searching) {
-  const [answered, asked] = searching ?? [0, 0];
-  say(byId('searching'), asked > answered ? `looking into regions: ${answered} of ${asked}` : '');
+/** Whether a planner is weighing what comes next. */
+export function showDeciding(isDeciding) {
+  say(byId('deciding'), isDeciding ? 'deciding…' : '');
 }
