@@ -2,7 +2,7 @@
 # Paths in recipes are relative, so the checkout may lie in a folder with spaces in its name.
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo reproduce test parity lint types bench clean
+.PHONY: help setup demo reproduce test parity faults lint types bench soak clean
 .SUFFIXES:
 
 BIN := .venv/bin
@@ -51,6 +51,9 @@ test: setup  ## Run the tests (ARGS='-k word' for some, JOBS=4 for more processe
 parity: setup  ## Compare 272 trials through the graph with the same in one process
 	BLOCKS_PLANNING_PARITY=all $(BIN)/pytest -n $(JOBS) test/parity $(ARGS)
 
+faults: setup  ## Kill nodes while trials run (ARGS='--kills 200 --trials 60 --seed 0')
+	PYTHONPATH=test $(BIN)/python -m faults $(ARGS)
+
 lint: setup  ## Check style and format
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
@@ -60,6 +63,9 @@ types: setup  ## Check types
 
 bench: setup  ## Measure speed
 	$(BIN)/python -m benchmarks $(ARGS)
+
+soak: setup  ## Run 20 000 trials through one graph, and see what grows (ARGS='--trials N')
+	$(BIN)/python -m benchmarks.soak $(ARGS)
 
 clean:  ## Remove everything that was made here
 	rm -f .venv/.stamp-*

@@ -8,11 +8,8 @@ from setuptools import find_packages, setup
 NAME = 'blocks_planning'
 SHARE = f'share/{NAME}'
 NODES = (
-    'world',
-    'subgoal_selector',
-    'action_searcher',
-    'trial_orchestrator',
-    'bag_recorder',
+    *('world', 'subgoal_selector', 'action_searcher', 'trial_orchestrator', 'bag_recorder'),
+    'marker_publisher',
     'trial_view',
 )
 

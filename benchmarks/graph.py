@@ -8,7 +8,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -16,6 +15,7 @@ from typing import Any
 import yaml
 
 from benchmarks.measure import Figure
+from benchmarks.processes import NODES, Taken, process, resources
 from blocks_planning.board.blocks import Block, Placement
 from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
@@ -26,7 +26,6 @@ from blocks_planning.trials import world
 from blocks_planning.trials.messages import PlaceBlock, TrialStarted, WorldState
 from blocks_planning.trials.spec import TrialSpec
 
-NODES = 'blocks_planning.ros.executables'
 DEADLINE_S = 20.0
 BOARD = Board(8, 8)
 SPEC = TrialSpec(
@@ -129,7 +128,7 @@ def _round_trips(command: list[str], rounds: int) -> list[float]:
 
     found = []
     is_node = command[0] == '-m'
-    with _process([sys.executable, *command]):
+    with process([sys.executable, *command]):
         wait_for(lambda: action.get_subscription_count() and caller.count_publishers('state'))
         wait_for(lambda: trial.get_subscription_count() or not is_node)
         for number in range(rounds):
@@ -166,69 +165,30 @@ def _bring_up(domain: int, seeds: int) -> Iterator[Figure]:
         path.write_text(yaml.safe_dump(script), encoding='utf-8')
         begun = time.perf_counter()
         command = [sys.executable, '-m', 'blocks_planning.cli', 'run', str(path)]
-        with _process([*command, '--out', folder, '--domain', str(domain)]) as process:
-            first = _wait_for_records(process, records, 1) - begun
+        with process([*command, '--out', folder, '--domain', str(domain)]) as running:
+            first = _wait_for_records(running, records, 1) - begun
             yield Figure('start of the graph to the first record', first, 's', '< 3')
             start = time.perf_counter()
-            taken: dict[str, dict[str, tuple[float, int]]] = {}
+            taken: dict[str, dict[str, Taken]] = {}
             for moment, part in (('start', 0.05), ('middle', 0.5), ('end', 0.95)):
                 count = max(2, int(part * total))
-                last = _wait_for_records(process, records, count)
-                taken[moment] = _resources(process.pid)
+                last = _wait_for_records(running, records, count)
+                taken[moment] = resources(running.pid)
             rate = (count - 1) / (last - start)
             yield Figure(
                 f'trials per second, scoping, bfs (3), {total} trials', rate, '/s', '> 20'
             )
-            process.wait(DEADLINE_S)
+            running.wait(DEADLINE_S)
     for name in taken['start']:
         for moment, of_nodes in taken.items():
-            memory, threads = of_nodes.get(name, (0.0, 0))
-            yield Figure(f'{name}, {moment}: {threads} threads, memory', memory, 'MB')
+            found = of_nodes.get(name, Taken(0.0, 0, 0, 0.0))
+            yield Figure(f'{name}, {moment}: {found.threads} threads, memory', found.memory, 'MB')
 
 
-def _wait_for_records(process: subprocess.Popen[bytes], path: Path, count: int) -> float:
+def _wait_for_records(running: subprocess.Popen[bytes], path: Path, count: int) -> float:
     """The time when there are so many records."""
     while not path.exists() or path.read_bytes().count(b'\n') < count:
-        if process.poll() is not None:
-            raise RuntimeError(f'the graph ended with {process.returncode}')
+        if running.poll() is not None:
+            raise RuntimeError(f'the graph ended with {running.returncode}')
         time.sleep(0.02)
     return time.perf_counter()
-
-
-def _resources(bringup: int) -> dict[str, tuple[float, int]]:
-    """Resident memory [MB] and threads of a bring-up and all nodes that it started."""
-    found = {}
-    for folder in Path('/proc').iterdir():
-        if not folder.name.isdecimal():
-            continue
-        try:
-            lines = (folder / 'status').read_text(encoding='utf-8').splitlines()
-            words = (folder / 'cmdline').read_text(encoding='utf-8').split('\0')
-        except OSError:
-            continue
-        status = dict(line.split(':', 1) for line in lines if ':' in line)
-        if bringup in (int(status['PPid']), int(folder.name)) and 'VmRSS' in status:
-            name = words[3] if NODES in words else 'bring-up'
-            memory = int(status['VmRSS'].split()[0]) / 1024
-            found[name] = memory, int(status['Threads'])
-    return found
-
-
-@contextmanager
-def _process(command: list[str]) -> Iterator[subprocess.Popen[bytes]]:
-    """A process that is ended in the end."""
-    process = subprocess.Popen(
-        command,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        cwd=Path(__file__).parents[1],
-    )
-    try:
-        yield process
-    finally:
-        process.terminate()
-        try:
-            process.wait(10)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()

@@ -12,9 +12,11 @@ from launch import LaunchDescription
 
 ARGUMENTS = {
     'script': ('', 'trial script to run; empty: wait for goals on run_trial'),
+    'participant': ('', 'code of the person who scopes; empty: as the script says'),
     'out_dir': ('trials', 'folder of trials.jsonl'),
     'bag_dir': ('', 'folder of a bag to record everything in; empty: no bag'),
     'namespace': ('', 'namespace of all nodes'),
+    'markers': ('false', 'true: show the towers to RViz and Foxglove'),
 }
 RESPAWNED = ('world', 'subgoal_selector', 'action_searcher')
 
@@ -43,7 +45,14 @@ def generate_launch_description() -> LaunchDescription:
     journal = [LaunchConfiguration('out_dir'), '/journal']
     orchestrator = node(
         'trial_orchestrator',
-        parameters=[{'script': text('script'), 'out_dir': text('out_dir'), 'wait_for': peers}],
+        parameters=[
+            {
+                'script': text('script'),
+                'participant': text('participant'),
+                'out_dir': text('out_dir'),
+                'wait_for': peers,
+            }
+        ],
     )
     return LaunchDescription(
         [
@@ -57,6 +66,11 @@ def generate_launch_description() -> LaunchDescription:
                 'bag_recorder',
                 parameters=[{'bag_dir': text('bag_dir')}],
                 condition=IfCondition(has_bag),
+            ),
+            node(
+                'marker_publisher',
+                respawn=True,
+                condition=IfCondition(LaunchConfiguration('markers')),
             ),
             orchestrator,
             RegisterEventHandler(

@@ -119,7 +119,10 @@ def remade(data: dict[str, Any]) -> dict[str, Any]:
     data['subgoal_planning_cost'] = sum(
         entry['subgoal_planning_cost'] for entry in data['decisions']
     )
-    known_before = json.dumps({key: data[key] for key in spec().to_json()}, sort_keys=True)
+    own = [key for key in ('participant', 'costs') if key in data]
+    known_before = json.dumps(
+        {key: data[key] for key in [*spec().to_json(), *own]}, sort_keys=True
+    )
     data['trial_id'] = hashlib.blake2b(known_before.encode(), digest_size=8).hexdigest()
     return data
 

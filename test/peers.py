@@ -105,8 +105,12 @@ class Graph:
         end = time.monotonic() + deadline_s
         while not condition():
             assert time.monotonic() < end, f'not within {deadline_s} s'
-            for executor in list(self._members.values()):
-                executor.spin_once(timeout_sec=_SPIN_S)
+            self.spin_some()
+
+    def spin_some(self) -> None:
+        """Give every node a turn."""
+        for executor in list(self._members.values()):
+            executor.spin_once(timeout_sec=_SPIN_S)
 
     def close(self) -> None:
         """End all nodes."""

@@ -36,6 +36,8 @@ Examples:
 """
 _PATH = click.Path(path_type=Path)
 _FRAMES_PER_S = 8
+_MOST_PICTURES = 16
+"""Of a script that has no more trials pictures are drawn unasked."""
 _SERVED_WITHIN_S = 60.0
 _LOOK_PERIOD_S = 0.2
 
@@ -63,6 +65,13 @@ _LOOK_PERIOD_S = 0.2
 @click.option(
     '--view-port', type=click.IntRange(0, 65535), default=0, help='[default: a free one]'
 )
+@click.option('--participant', default='', help='Code of the person who scopes in this session.')
+@click.option('--markers', is_flag=True, help='Show the towers to RViz and Foxglove.')
+@click.option(
+    '--pictures/--no-pictures',
+    default=None,
+    help=f'Draw the first {_MOST_PICTURES} trials.  [default: if there are no more]',
+)
 def run(
     script: Path,
     out: Path,
@@ -73,19 +82,23 @@ def run(
     view: bool,
     view_host: str,
     view_port: int,
+    participant: str,
+    markers: bool,
+    pictures: bool | None,
 ) -> int:
     """Bring up the ROS graph and run the trials of a script through it.
 
     Records go to trials.jsonl in the folder --out; trials whose records are there already are not
-    run again. The exit code is 1 if a tower was not rebuilt perfectly.
+    run again. Pictures of trials go to the folder pictures in it. The exit code is 1 if a tower
+    was not rebuilt perfectly.
     """
-    specs = read_script(script)
+    specs = read_script(script, participant)
     try:
         from blocks_planning.ros.bringup import Bringup, BringupSpec
     except ImportError as error:
         raise BlocksPlanningError(f'ROS 2 is not installed here: {error}') from None
     page = (view_host, view_port) if view else None
-    spec = BringupSpec(script, out, bag, namespace, domain, pace, page)
+    spec = BringupSpec(script, out, bag, namespace, domain, pace, participant, markers, page)
     records = RecordFile(spec.records)
     wanted = {trial.trial_id for trial in specs}
     done = len(wanted & records.finished)
@@ -99,13 +112,16 @@ def run(
             place = (bringup.page.host, bringup.page.port)
             _open_when_served(bringup.page.url, place)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    successes = 0
+    ended: list[TrialRecord] = []
     try:
         with progress:
             bringup.run(progress.on_tick)
             progress.on_tick(None)
     finally:
-        successes = _summarise(spec.records, wanted)
+        ended = _summarise(spec.records, wanted)
+    if pictures or (pictures is None and len(specs) <= _MOST_PICTURES):
+        _draw(ended, out / 'pictures')
+    successes = sum(record.status is TrialStatus.SUCCESS for record in ended)
     return int(successes < len(specs))
 
 
@@ -131,8 +147,8 @@ def _is_served(place: tuple[str, int]) -> bool:
     return True
 
 
-def _summarise(path: Path, wanted: set[str]) -> int:
-    """Print what came of the wanted trials; return how many towers were rebuilt."""
+def _summarise(path: Path, wanted: set[str]) -> list[TrialRecord]:
+    """Print what came of the wanted trials; return their records."""
     from blocks_planning.view.tables import print_summaries
 
     records = read_records(path) if path.stat().st_size else []
@@ -140,7 +156,15 @@ def _summarise(path: Path, wanted: set[str]) -> int:
     if records:
         print_summaries(records)
         click.echo(f'Records: {path}')
-    return sum(record.status is TrialStatus.SUCCESS for record in records)
+    return records
+
+
+def _draw(records: list[TrialRecord], folder: Path) -> None:
+    """Draw the first trials, and say where."""
+    if records:
+        from blocks_planning.view.gallery import print_gallery, save_gallery
+
+        print_gallery(save_gallery(records, folder, _MOST_PICTURES))
 
 
 class _Progress:

@@ -12,6 +12,7 @@ their trial is over.
 
 from __future__ import annotations
 
+import threading
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -44,6 +45,9 @@ class ActionSearcher(PartNode):
         self._cancel = CancelToken()
         self._threads = ThreadPoolExecutor(self.values['workers'], 'search')
         self._answers: deque[SearchAnswer | BaseException] = deque()
+        self._counting = threading.Lock()
+        self._running = 0
+        self._evaluated = 0
         self._wake = self.create_guard_condition(self._deliver)
 
     def begin(self, trial: TrialStarted) -> None:
@@ -64,8 +68,19 @@ class ActionSearcher(PartNode):
         assert self.trial is not None
         self._threads.submit(self._search, self.trial, message, self._cancel)
 
+    def load(self) -> dict[str, object]:
+        """See :class:`PartNode`; of the searches that were asked for in the trial."""
+        running = self._running
+        return {
+            'searches_running': running,
+            'searches_waiting': max(0, len(self.memory.solving) - running),
+            'searches_done': len(self.memory.known),
+            'states_evaluated': self._evaluated,
+        }
+
     def _search(self, trial: TrialStarted, question: Solve, cancel: CancelToken) -> None:
         spec = trial.spec
+        self._count_running(1)
         try:
             problem = Problem(spec.task, *question.query)
             result = solve(problem, spec.search, spec.seed, spec.budget, cancel)
@@ -75,13 +90,20 @@ class ActionSearcher(PartNode):
             if result.status is SolveStatus.CANCELLED:
                 return
             self._answers.append(SearchAnswer(trial.trial_id, question.query, result))
+        finally:
+            self._count_running(-1)
         self._wake.trigger()
+
+    def _count_running(self, change: int) -> None:
+        with self._counting:
+            self._running += change
 
     def _deliver(self) -> None:
         while self._answers:
             answer = self._answers.popleft()
             if isinstance(answer, BaseException):
                 raise answer
+            self._evaluated += answer.result.planning_cost
             if self.trial is not None and answer.trial_id == self.trial.trial_id:
                 self.say(answer)
                 self.take(answer)

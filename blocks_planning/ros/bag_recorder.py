@@ -24,10 +24,12 @@ from rclpy.qos import QoSProfile
 from blocks_planning.ros.bagging.definitions import definition_of, type_hash_of
 from blocks_planning.ros.bagging.metadata import RecordedTopic, to_yaml
 from blocks_planning.ros.bagging.writer import BagWriter
+from blocks_planning.ros.diagnostics import Diagnostics, Health
 from blocks_planning.ros.graph import BAG_RECORDER
 from blocks_planning.ros.parameters import Parameter, declare
+from blocks_planning.ros.peers import Peers
 from blocks_planning.ros.runtime import run
-from blocks_planning.ros.topics import Topic
+from blocks_planning.ros.topics import VIEW_TOPICS, Topic, ViewTopic
 
 BAG_DIR = Parameter('bag_dir', 'bag', 'Folder of the bag: a new one, or of a bag cut off.')
 FLUSH_PERIOD = Parameter(
@@ -56,13 +58,14 @@ class BagRecorder(Node):
         super().__init__(BAG_RECORDER.name, **options)
         values = declare(self, PARAMETERS)
         self._path = Path(values['bag_dir'])
-        topics = {topic: self.resolve_topic_name(topic.name) for topic in BAG_RECORDER.listens}
+        recorded: list[Topic | ViewTopic] = [*BAG_RECORDER.listens, *VIEW_TOPICS]
+        topics = {topic: self.resolve_topic_name(topic.name) for topic in recorded}
         self._writer = BagWriter(
             self._path,
             [recorded_topic(topic, name) for topic, name in topics.items()],
             values['split_bytes'],
         )
-        self._fails = False
+        self._failure = ''
         for repair in self._writer.repairs:
             self.get_logger().warning(str(repair))
         for topic, name in topics.items():
@@ -75,33 +78,40 @@ class BagRecorder(Node):
             )
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(values['flush_period_s'], self._flush, clock=steady)
+        self._peers = Peers(self)
+        self._diagnostics = Diagnostics(self, self.health)
 
     @property
     def count(self) -> int:
         """Number of messages received."""
         return self._writer.counts.total()
 
+    def health(self) -> Health:
+        """How the recorder is."""
+        counts = {'messages_recorded': self.count, 'messages_lost': self._writer.lost}
+        around = self._peers.around(BAG_RECORDER)
+        return Health('recording', '', *around, failure=self._failure, values=counts)
+
     def _record(self, topic: str, data: bytes, info: dict[str, int]) -> None:
         received_ns = info['received_timestamp'] or time.time_ns()
         is_time = self._writer.add(topic, data, received_ns, info['source_timestamp'])
-        if is_time and not self._fails:
+        if is_time and not self._failure:
             self._flush()
 
     def _flush(self) -> None:
         try:
             self._writer.flush()
         except OSError as error:
-            if not self._fails:
+            if not self._failure:
+                self._failure = f'{self._path}: nothing more can be written: {error.strerror}'
                 self.get_logger().error(
-                    f'{self._path}: nothing more can be written: {error.strerror}; what was '
-                    'written stays, and it is tried again'
+                    f'{self._failure}; what was written stays, and it is tried again'
                 )
-            self._fails = True
             return
-        if self._fails:
+        if self._failure:
             lost = self._writer.lost
             self.get_logger().warning(f'{self._path}: written again; {lost} messages lost')
-        self._fails = False
+        self._failure = ''
 
     def finish(self) -> None:
         """Finish the bag; nothing may be received any more."""
@@ -114,7 +124,7 @@ class BagRecorder(Node):
             )
 
 
-def recorded_topic(topic: Topic, name: str) -> RecordedTopic:
+def recorded_topic(topic: Topic | ViewTopic, name: str) -> RecordedTopic:
     """What a bag says of a topic."""
     package, ros_type = topic.ros_type.__module__.split('.')[0], topic.ros_type.__name__
     full_type = f'{package}/msg/{ros_type}'

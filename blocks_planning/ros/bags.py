@@ -1,13 +1,16 @@
 """Reading trials back from a bag, with no graph running and no middleware.
 
 The messages of each trial go through the same conversions as on the graph and through the scribe,
-so that the record of a trial is made from the bag alone.
+so that the record of a trial is made from the bag alone. Where one file of a bag ends and the next
+begins messages may be missing: the recorder may have been killed, and started again later.
 """
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, fields, replace
+from operator import lt
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +20,7 @@ from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import InvalidInput
 from blocks_planning.ros.bagging import BagError
-from blocks_planning.ros.bagging.repair import is_finished, repair
+from blocks_planning.ros.bagging.repair import file_begins, is_finished, repair
 from blocks_planning.ros.conversions.board import state_from_ros
 from blocks_planning.ros.conversions.cells import placed_from_ros
 from blocks_planning.ros.conversions.decisions import subgoal_from_ros
@@ -63,19 +66,38 @@ class RecordedTrial:
         record: made from its states and subgoals. Its status is building if they do not lead to
             an end.
         outcome: what was said at its end; None if that is not in the bag.
+        spans_files: whether it was under way where one file ends and the next begins, or before
+            the recorder of the next one had found all who speak.
     """
 
     trial_id: str
     record: TrialRecord
     outcome: Outcome | None
+    spans_files: bool = False
 
     @property
     def is_over(self) -> bool:
         """Whether the bag has its end."""
-        return self.outcome is not None or self.record.status is not TrialStatus.BUILDING
+        has_outcome = self.outcome is not None and not self._has_gap
+        return has_outcome or self.record.status is not TrialStatus.BUILDING
+
+    @property
+    def _has_gap(self) -> bool:
+        """Whether messages are missing that led to the outcome, and may be."""
+        if self.outcome is None or not self.spans_files:
+            return False
+        found = (self.record.blocks, self.record.subgoals)
+        fewer = any(map(lt, found, (self.outcome.blocks, self.outcome.subgoals)))
+        return fewer or self.record.status is TrialStatus.BUILDING
 
     def contradictions(self) -> Iterator[str]:
         """Everything that does not follow from the rest, a sentence each."""
+        if self.outcome is not None and self._has_gap:
+            found, said = self.record.placements, self.outcome.placements
+            if said[: len(found)] != found:
+                yield 'the outcome says other placements than the messages that led there'
+            yield from verify.contradictions(_begun(self.record))
+            return
         if self.outcome is not None and self.record.status is TrialStatus.BUILDING:
             status = self.outcome.status.value
             yield f'the outcome says {status!r}, but messages that lead there are not in the bag'
@@ -87,6 +109,8 @@ class RecordedTrial:
                     yield f'the outcome says {name} {_show(said)}, the messages {_show(found)}'
         if self.is_over:
             yield from verify.contradictions(self.record)
+        elif self.spans_files:
+            yield from verify.contradictions(_begun(self.record))
         else:  # as if it had been cancelled where the bag ends
             yield from verify.contradictions(replace(self.record, status=TrialStatus.CANCELLED))
 
@@ -102,7 +126,9 @@ class _Heard:
     """What was said of a trial so far."""
 
     memory: scribe.Memory
+    file: int
     outcome: Outcome | None = None
+    spans_files: bool = False
     board: Board = field(init=False)
 
     def __post_init__(self) -> None:
@@ -115,7 +141,30 @@ class _Heard:
         record, outcome = self.memory.record(), self.outcome
         if outcome is not None and outcome.status is TrialStatus.CANCELLED:
             record = _cancelled(self.memory, outcome)
-        return RecordedTrial(trial_id, record, outcome)
+        return RecordedTrial(trial_id, record, outcome, self.spans_files)
+
+
+def _begun(record: TrialRecord) -> TrialRecord:
+    """As much of a record as both placements and decisions are there of, as if cancelled there."""
+    decisions: list[DecisionRecord] = []
+    led = 0
+    for entry in record.decisions:
+        left, executed = record.blocks - entry.placed, 0
+        if left < 0 or not entry.decision.subgoals:
+            break
+        for subgoal in entry.decision.subgoals[: entry.executed]:
+            executed += 1
+            left -= subgoal.execute
+            if left <= 0:
+                break
+        decisions.append(replace(entry, executed=executed))
+        led = record.blocks - max(left, 0)
+    return replace(
+        record,
+        status=TrialStatus.CANCELLED,
+        placements=record.placements[:led],
+        decisions=tuple(decisions),
+    )
 
 
 def _cancelled(memory: scribe.Memory, outcome: Outcome) -> TrialRecord:
@@ -154,20 +203,29 @@ def trials_of(bag: Path, refuse: Callable[[str], None] | None = None) -> Iterato
     inbox = Inbox()
     outcomes: set[str] = set()
 
-    def hear(kind: str, message: Any) -> None:
+    said: dict[int, set[str]] = {}
+
+    def hear(kind: str, message: Any, file: int) -> None:
         trial_id = message.trial_id
-        if kind == _OUTCOME:
+        is_first = kind not in said.setdefault(file, set())
+        said[file].add(kind)
+        may_be_earlier = file and (is_first or _TRIAL not in said[file])
+        if kind == _OUTCOME and not may_be_earlier:
             outcomes.add(trial_id)
         if trial_id in finished:
             return
         heard = trials.get(trial_id)
+        if heard is not None and file > heard.file:
+            heard.spans_files = True
         try:
             if kind == _TRIAL:
-                _announce(trials, started_from_ros(message))
+                _announce(trials, started_from_ros(message), file)
+                if file and len(said[file]) < len(_KINDS):
+                    trials[trial_id].spans_files = True
                 for held in inbox.take(trial_id):
                     hear(*held)
             elif heard is None:
-                inbox.hold(trial_id, (kind, message))
+                inbox.hold(trial_id, (kind, message, file))
             elif kind == _OUTCOME:
                 outcome = _outcome_from_ros(heard.board, message)
                 if heard.outcome not in (None, outcome):
@@ -182,8 +240,8 @@ def trials_of(bag: Path, refuse: Callable[[str], None] | None = None) -> Iterato
         except AttributeError as error:
             raise BagError(f'{bag}: was recorded with another kind of {kind}: {error}') from None
 
-    for kind, message in _messages_of(bag):
-        hear(kind, message)
+    for kind, message, file in _messages_of(bag):
+        hear(kind, message, file)
         if len(trials) > _MOST_OPEN:
             oldest = next(iter(trials))
             finished.add(oldest)
@@ -195,9 +253,9 @@ def trials_of(bag: Path, refuse: Callable[[str], None] | None = None) -> Iterato
         yield heard.trial()
 
 
-def _announce(trials: dict[str, _Heard], started: TrialStarted) -> None:
+def _announce(trials: dict[str, _Heard], started: TrialStarted, file: int) -> None:
     if started.trial_id not in trials:
-        trials[started.trial_id] = _Heard(scribe.Memory(started))
+        trials[started.trial_id] = _Heard(scribe.Memory(started), file)
     elif trials[started.trial_id].memory.trial != started:
         raise BagError('it was announced already, as another one')
 
@@ -212,8 +270,12 @@ def _outcome_from_ros(board: Board, message: Any) -> Outcome:
     return Outcome(**{**counts, 'status': status, 'placements': placements})
 
 
-def _messages_of(bag: Path) -> Iterator[tuple[str, Any]]:
-    """The messages that trials are made of, in the order in which they came."""
+def _messages_of(bag: Path) -> Iterator[tuple[str, Any, int]]:
+    """The messages that trials are made of, in the order in which they came.
+
+    Yields:
+        (kind, message, number of the file that it stands in)
+    """
     if not bag.exists():
         raise BagError(f'{bag}: does not exist')
     try:
@@ -236,7 +298,9 @@ def _messages_of(bag: Path) -> Iterator[tuple[str, Any]]:
         yield entry
 
 
-def _read(bag: Path) -> Iterator[tuple[str, Any]]:
+def _read(bag: Path) -> Iterator[tuple[str, Any, int]]:
+    begins = file_begins(bag)
+    times_ns = [begin.time_ns for begin in begins]
     with AnyReader([bag]) as reader:
         wanted = {
             connection.msgtype: connection.msgtype.removeprefix(_PACKAGE)
@@ -245,6 +309,8 @@ def _read(bag: Path) -> Iterator[tuple[str, Any]]:
         connections = [c for c in reader.connections if wanted[c.msgtype] in _KINDS]
         if not connections:
             return
-        for connection, _, data in reader.messages(connections):
+        for connection, received_ns, data in reader.messages(connections):
             message = reader.deserialize(data, connection.msgtype)
-            yield wanted[connection.msgtype], message
+            place = bisect_right(times_ns, received_ns) - 1
+            file = begins[place].number if place >= 0 else 0
+            yield wanted[connection.msgtype], message, file

@@ -39,6 +39,8 @@ class BringupSpec:
         namespace: of all nodes, '' for none.
         domain: ROS domain; None for a free one.
         placing_s: how long placing a block takes [s].
+        participant: code of the person who scopes, '' for what the script says.
+        markers: whether the tower is shown as markers, for RViz and Foxglove.
         view: host and port of the page, port 0 for a free one; None for no page.
     """
 
@@ -48,6 +50,8 @@ class BringupSpec:
     namespace: str = ''
     domain: int | None = None
     placing_s: float = 0.0
+    participant: str = ''
+    markers: bool = False
     view: tuple[str, int] | None = None
 
     @property
@@ -68,6 +72,8 @@ class Bringup:
         self._names = [name for name in WAIT_FOR.default if isinstance(name, str)]
         if spec.bag is not None:
             self._names.append('bag_recorder')
+        if spec.markers:
+            self._names.append('marker_publisher')
         self._port: ReservedPort | None = None
         self.page: Address | None = None
         if spec.view is not None:
@@ -108,6 +114,7 @@ class Bringup:
         if name == 'trial_orchestrator':
             parameters = {
                 'script': self._spec.script,
+                'participant': repr(self._spec.participant),
                 'out_dir': self._spec.out,
                 'wait_for': f'[{", ".join([*self._names, WATCHER.name])}]',
             }
@@ -117,6 +124,7 @@ class Bringup:
                 'host': self.page.host,
                 'port': self.page.port,
                 'script': self._spec.script,
+                'participant': repr(self._spec.participant),
             }
             environment = {**environment, TOKEN_VARIABLE: self.page.token}
         for key, value in parameters.items():
@@ -177,6 +185,6 @@ class Bringup:
                 )
             if not process.keep_alive():
                 raise BlocksPlanningError(
-                    f'{process.name} died {process.restarts + 1} times, the last time with '
-                    f'exit code {process.exit_code()}'
+                    f'{process.name} died {process.deaths} times in a row soon after its start, '
+                    f'the last time with exit code {process.exit_code()}'
                 )

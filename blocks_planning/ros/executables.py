@@ -44,6 +44,11 @@ def bag_recorder() -> None:
     _start('bag_recorder')
 
 
+def marker_publisher() -> None:
+    """The tower in space."""
+    _start('marker_publisher')
+
+
 def trial_view() -> None:
     """The page."""
     _start('trial_view')

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from blocks_planning.ros.topics import (
     ACTION,
     ACTION_OUTCOME,
+    MARKERS,
     OUTCOME,
     PLAN,
     PROPOSAL,
@@ -17,15 +18,17 @@ from blocks_planning.ros.topics import (
     TOPICS,
     TRIAL,
     Topic,
+    ViewTopic,
 )
 
 
 class NodeTopics(NamedTuple):
-    """A node by its name, and its topics."""
+    """A node by its name, and its topics; ``views`` is what it says to viewers alone."""
 
     name: str
     listens: tuple[Topic, ...]
     says: tuple[Topic, ...]
+    views: tuple[ViewTopic, ...] = ()
 
 
 WORLD = NodeTopics('world', (TRIAL, ACTION, OUTCOME), (STATE, ACTION_OUTCOME))
@@ -39,8 +42,11 @@ ACTION_SEARCHER = NodeTopics(
     (TRIAL, STATE, SEARCH_REQUEST, SUBGOAL, OUTCOME),
     (SEARCH_RESULT, PLAN, ACTION),
 )
-TRIAL_ORCHESTRATOR = NodeTopics('trial_orchestrator', (STATE, SUBGOAL), (TRIAL, OUTCOME))
+TRIAL_ORCHESTRATOR = NodeTopics(
+    'trial_orchestrator', (STATE, SUBGOAL, ACTION_OUTCOME), (TRIAL, OUTCOME)
+)
 BAG_RECORDER = NodeTopics('bag_recorder', TOPICS, ())
+MARKER_PUBLISHER = NodeTopics('marker_publisher', (TRIAL, STATE, SUBGOAL, OUTCOME), (), (MARKERS,))
 TRIAL_VIEW = NodeTopics(
     'trial_view',
     (TRIAL, STATE, SEARCH_RESULT, PROPOSAL, SUBGOAL, OUTCOME),
@@ -56,7 +62,11 @@ GRAPH = {
         ACTION_SEARCHER,
         TRIAL_ORCHESTRATOR,
         BAG_RECORDER,
+        MARKER_PUBLISHER,
         TRIAL_VIEW,
         WATCHER,
     )
 }
+
+VIEWERS = (MARKER_PUBLISHER.name, WATCHER.name)
+"""Who only looks: a script waits for them at its beginning, but no trial ends because they go."""

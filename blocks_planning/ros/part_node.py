@@ -12,9 +12,11 @@ from rclpy.node import Node
 
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import InvalidInput
+from blocks_planning.ros.diagnostics import Diagnostics, Health
 from blocks_planning.ros.graph import NodeTopics
 from blocks_planning.ros.inbox import Inbox
 from blocks_planning.ros.parameters import Parameter, declare
+from blocks_planning.ros.peers import Peers
 from blocks_planning.ros.topics import TRIAL, Topic
 from blocks_planning.trials.messages import Message, Remind, TrialStarted
 
@@ -79,22 +81,48 @@ class PartNode(Node):
                 topic.ros_type, topic.name, partial(self._receive, topic), topic.subscription_qos
             )
         self.create_timer(self.values['remind_period_s'], self._remind, clock=self.steady)
+        self.topics = topics
+        self.peers = Peers(self)
+        self._diagnostics = Diagnostics(self, self.health)
 
     def take(self, message: Message) -> None:
         """Let the part step, and say what it says."""
         self._has_news = True
         if isinstance(message, TrialStarted):
             self.begin(message)
-        self.memory, said = self._part.step(self.memory, message)
-        for answer in said:
+        for answer in self.advance(message):
             self.say(answer)
         if isinstance(message, TrialStarted):
             for topic, held in self._inbox.take(message.trial_id):
                 self._receive(topic, held)
 
+    def advance(self, message: Message) -> tuple[Message, ...]:
+        """Let the part step; return what is to be said."""
+        said: tuple[Message, ...]
+        self.memory, said = self._part.step(self.memory, message)
+        return said
+
     def receive(self, message: Message) -> None:
         """A message from the graph that is as it must be."""
         self.take(message)
+
+    def health(self) -> Health:
+        """How the node is."""
+        return Health(
+            'building' if self.is_busy else 'idle',
+            self.trial.trial_id if self.is_busy and self.trial is not None else '',
+            *self.peers.around(self.topics),
+            values={'messages_refused': self.refused, **self.load()},
+        )
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a trial runs here."""
+        return getattr(self.memory, 'trial', None) is not None
+
+    def load(self) -> dict[str, object]:
+        """What the node has to do, and has done, by name; see :mod:`.diagnostics`."""
+        return {}
 
     def begin(self, trial: TrialStarted) -> None:
         """Take note of the trial that runs."""
@@ -146,13 +174,16 @@ class PartNode(Node):
             else:
                 converted = topic.from_ros(message)
         except InvalidInput as error:
-            self.refused += 1
-            self.get_logger().warning(
-                f'refused a message on {topic.name}: {error}',
-                throttle_duration_sec=WARN_PERIOD_S,
-            )
+            self.refuse(str(error), topic.name)
             return
         self.receive(converted)
+
+    def refuse(self, reason: str, topic: str) -> None:
+        """Count a message that is not taken, and say why, not too often."""
+        self.refused += 1
+        self.get_logger().warning(
+            f'refused a message on {topic}: {reason}', throttle_duration_sec=WARN_PERIOD_S
+        )
 
     def _on_match(self, status: QoSPublisherMatchedInfo) -> None:
         """A listener came: it may have missed what was asked before."""

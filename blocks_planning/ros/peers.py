@@ -2,41 +2,133 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict, defaultdict
 from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 from rclpy.node import Node
 
-from blocks_planning.ros.graph import GRAPH
+from blocks_planning.ros.graph import GRAPH, NodeTopics
+from blocks_planning.ros.topics import PROPOSAL, TOPICS, VIEW_TOPICS, Topic, ViewTopic
+
+_UNKNOWN = '_NODE_NAME_UNKNOWN_'
+_MOST_NAMES = 10_000
 
 
-def missing_peers(node: Node, names: Iterable[str]) -> list[str]:
-    """The nodes, of this one's namespace, that are not there with all of their topics.
+class Around(NamedTuple):
+    """The other ends of a node's topics.
 
-    Of a node that is not of this package only the name is looked for.
+    Attributes:
+        present: names of the nodes that are there, in order.
+        missing: names of those that this package has for what nobody says.
     """
-    present = {
-        name for name, space in node.get_node_names_and_namespaces() if space == _space(node)
-    }
-    return [name for name in names if name not in present or not _is_complete(node, name)]
+
+    present: list[str]
+    missing: list[str]
 
 
-def _space(node: Node) -> str:
-    return str(node.get_namespace())
+class Peers:
+    """The other nodes of a node's namespace.
+
+    Of a node that was stopped for longer than its lease and goes on, the middleware finds the ends
+    of its topics again, but not its name. So the name that an end had is kept.
+    """
+
+    def __init__(self, node: Node) -> None:
+        """Nothing is looked for yet."""
+        self._node = node
+        self._names: OrderedDict[bytes, tuple[str, str]] = OrderedDict()
+
+    def missing(self, names: Iterable[str]) -> list[str]:
+        """The nodes that are not there with all of their topics.
+
+        Of a node that is not of this package only the name is looked for.
+        """
+        ends, space = self._ends(), self._node.get_namespace()
+        alive = {name for name, at in self._node.get_node_names_and_namespaces() if at == space}
+        return [
+            name
+            for name in names
+            if (name not in alive and name not in ends) or not _wanted(name) <= ends[name]
+        ]
+
+    def around(self, topics: NodeTopics) -> Around:
+        """Who is at the other ends of a node's topics."""
+        heard = {_End(True, topic.name) for topic in topics.listens}
+        sought = heard | {_End(False, topic.name) for topic in topics.says}
+        ends = self._ends()
+        unsaid = heard.difference(*ends.values()) - _NOT_ALWAYS_SAID
+        present = sorted(name for name in ends if name != topics.name and ends[name] & sought)
+        missing = [name for name in GRAPH if name not in present and _wanted(name) & unsaid]
+        return Around(present, missing)
+
+    def _ends(self) -> defaultdict[str, set[_End]]:
+        """Which ends each node has."""
+        found: defaultdict[str, set[_End]] = defaultdict(set)
+        for topic in (*TOPICS, *VIEW_TOPICS):
+            name = self._node.resolve_topic_name(topic.name)
+            for says, infos in (
+                (True, self._node.get_publishers_info_by_topic(name)),
+                (False, self._node.get_subscriptions_info_by_topic(name)),
+            ):
+                for node_name, space in map(self._name_of, infos):
+                    if space == self._node.get_namespace():
+                        found[node_name].add(_End(says, topic.name))
+        return found
+
+    def _name_of(self, info: Any) -> tuple[str, str]:
+        """Name and namespace of the node that an end is of; empty if that was never known."""
+        end = bytes(info.endpoint_gid)
+        if info.node_name != _UNKNOWN:
+            self._names[end] = info.node_name, info.node_namespace
+            self._names.move_to_end(end)
+            while len(self._names) > _MOST_NAMES:
+                self._names.popitem(last=False)
+        return self._names.get(end, ('', ''))
 
 
-def _is_complete(node: Node, name: str) -> bool:
+class _End(NamedTuple):
+    """The end of a topic, by its name, at which a node says it or listens."""
+
+    says: bool
+    topic: str
+
+
+_NOT_ALWAYS_SAID = {_End(True, PROPOSAL.name)}
+"""There need not be a person, nor a page."""
+
+
+def _wanted(name: str) -> set[_End]:
+    """The ends that a node has when it is there; none of a node that is not of this package."""
     topics = GRAPH.get(name)
     if topics is None:
-        return True
-    me = (name, _space(node))
-    return all(
-        me in _ends(node.get_subscriptions_info_by_topic(node.resolve_topic_name(topic.name)))
-        for topic in topics.listens
-    ) and all(
-        me in _ends(node.get_publishers_info_by_topic(node.resolve_topic_name(topic.name)))
-        for topic in topics.says
-    )
+        return set()
+    said: list[Topic | ViewTopic] = [*topics.says, *topics.views]
+    says = {_End(True, topic.name) for topic in said}
+    return says | {_End(False, topic.name) for topic in topics.listens}
 
 
-def _ends(infos: Iterable[object]) -> set[tuple[str, str]]:
-    return {(info.node_name, info.node_namespace) for info in infos}  # type: ignore[attr-defined]
+class Attendance:
+    """How long whoever is not there has been missing."""
+
+    def __init__(self) -> None:
+        """Nobody is missing."""
+        self._since: dict[str, float] = {}
+
+    def note(self, missing: Iterable[str], now_s: float) -> list[str]:
+        """Take note of who is missing at a moment [s]; return who has just gone."""
+        since = {name: self._since.get(name, now_s) for name in missing}
+        gone = [name for name in since if name not in self._since]
+        self._since = since
+        return gone
+
+    @property
+    def missing(self) -> list[str]:
+        """Who is missing."""
+        return list(self._since)
+
+    def overdue(self, now_s: float, bound_s: float, begin_s: float) -> str:
+        """Who has been missing for ``bound_s`` or longer since ``begin_s``, as a sentence; or ''."""
+        waited = {name: now_s - max(since, begin_s) for name, since in self._since.items()}
+        late = [f'{name} for {wait:.1f} s' for name, wait in waited.items() if wait >= bound_s]
+        return f'missing: {", ".join(late)}' if late else ''

@@ -11,8 +11,11 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-MOST_RESTARTS = 5
+MOST_DEATHS = 8
+STABLE_S = 5.0
+"""Who has run for so long is forgiven all its deaths."""
 _FIRST_PAUSE_S = 0.1
+_LONGEST_PAUSE_S = 3.2
 STOP_BOUND_S = 2.0
 PARENT_VARIABLE = 'BLOCKS_PLANNING_PARENT'
 
@@ -25,14 +28,17 @@ class NodeProcess:
         name: of the executable.
         arguments: behind ``--ros-args``.
         restarts: how often it was started again.
+        deaths: how often in a row it died soon after its start.
     """
 
     name: str
     arguments: Sequence[str]
     environment: Mapping[str, str]
     restarts: int = 0
+    deaths: int = 0
     _process: subprocess.Popen[bytes] | None = field(default=None, repr=False)
-    _not_before: float = 0.0
+    _started: float = 0.0
+    _again_at: float | None = None
 
     def start(self) -> None:
         """Start the process, in a session of its own: Ctrl-C is for the bring-up to pass on."""
@@ -45,6 +51,7 @@ class NodeProcess:
         ]
         command += ['--disable-external-lib-logs', *self.arguments]
         environment = {**self.environment, PARENT_VARIABLE: str(os.getpid())}
+        self._started = time.monotonic()
         self._process = subprocess.Popen(command, env=environment, start_new_session=True)
 
     @property
@@ -58,17 +65,26 @@ class NodeProcess:
         return None if self._process is None else self._process.poll()
 
     def keep_alive(self) -> bool:
-        """Start the process again if it has died; return False if it died too often."""
-        if self._process is None or self._process.poll() is None:
+        """Start the process again some time after it died; return False if it does so too often.
+
+        To be called some times a second.
+        """
+        if self._process is None:
             return True
-        if self.restarts >= MOST_RESTARTS:
-            return False
         now = time.monotonic()
-        if self._not_before == 0.0:
-            self._not_before = now + _FIRST_PAUSE_S * 2**self.restarts
-        if now >= self._not_before:
+        if self._again_at is None and now - self._started >= STABLE_S:
+            self.deaths = 0
+        if self._process.poll() is None:
+            return True
+        if self._again_at is None:
+            self.deaths += 1
+            pause_s = min(_FIRST_PAUSE_S * 2 ** (self.deaths - 1), _LONGEST_PAUSE_S)
+            self._again_at = now + pause_s
+        if self.deaths > MOST_DEATHS:
+            return False
+        if now >= self._again_at:
             self.restarts += 1
-            self._not_before = 0.0
+            self._again_at = None
             self.start()
         return True
 

@@ -5,6 +5,9 @@ in the middleware with the GIL held. So signals only set an event here; the node
 thread; and a timer in C ends the process if taking the node down takes too long. A process leaves
 within a second, with exit code 0, also during a search; BLOCKS_PLANNING_EXIT_BOUND_S gives it
 more seconds.
+
+A process that was stopped for so long that all others dropped it begins anew, with the same process
+id: Fast DDS does not bring all of its topics back when it goes on.
 """
 
 from __future__ import annotations
@@ -17,6 +20,7 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
@@ -28,11 +32,15 @@ from rclpy.signals import SignalHandlerOptions
 
 from blocks_planning.errors import BlocksPlanningError
 from blocks_planning.ros.processes import PARENT_VARIABLE
+from blocks_planning.ros.single import claim_name
 
 EXIT_BOUND_S = float(os.environ.get('BLOCKS_PLANNING_EXIT_BOUND_S', '0.9'))
 _SPIN_S = 0.1
 _DRAIN_STEP_S = 0.01
 _LOOK_FOR_PARENT_S = 0.5
+STOOD_STILL_S = 4.5
+"""Less than the lease in config/loopback.xml, after which others take a node for dead."""
+_MOST_WORK = 0.1
 BAD_INPUT = 2
 CRASHED = 3
 
@@ -53,11 +61,13 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
     """
     prepare_environment()
     stop = threading.Event()
+    began = _look_at_clocks()  # before there is anybody to drop it
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda received, _: _on_signal(stop, received))
     try:
         node = make_node(stop)
+        claim = claim_name(node.context.get_domain_id(), node.get_fully_qualified_name())
     except BlocksPlanningError as error:
         sys.stderr.write(f'Error: {error}\n')
         sys.stderr.flush()
@@ -72,7 +82,7 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         daemon=True,
     )
     spinning.start()
-    _wait(stop)
+    _wait(stop, began, node.get_fully_qualified_name())
     _arm_exit()
     spinning.join(EXIT_BOUND_S / 2)  # a callback that is still busy is not torn down under
     if not spinning.is_alive():
@@ -82,6 +92,8 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         executor.shutdown(timeout_sec=_SPIN_S)
         node.destroy_node()
         rclpy.utilities.try_shutdown()
+    if claim is not None:
+        claim.close()
     for failure in failures:
         traceback.print_exception(failure)
     _leave(CRASHED if failures else getattr(node, 'exit_code', 0))
@@ -104,12 +116,42 @@ def _leave(code: int) -> NoReturn:
     os._exit(code)
 
 
-def _wait(stop: threading.Event) -> None:
+def _wait(stop: threading.Event, looked: tuple[float, float], name: str) -> None:
     """Wait for the end; it also comes when the bring-up that started this process is gone."""
     parent = os.environ.get(PARENT_VARIABLE)
     while not stop.wait(_LOOK_FOR_PARENT_S):
         if parent is not None and os.getppid() != int(parent):
             stop.set()
+        before, looked = looked, _look_at_clocks()
+        passed_s, worked_s = looked[0] - before[0], looked[1] - before[1]
+        if stood_still(passed_s, worked_s):
+            sys.stderr.write(f'{name} stood still for {passed_s:.1f} s, and begins anew\n')
+            _begin_anew()
+
+
+def _look_at_clocks() -> tuple[float, float]:
+    """(a steady clock, processor time of the process) [s]."""
+    return time.monotonic(), time.process_time()
+
+
+def stood_still(passed_s: float, worked_s: float) -> bool:
+    """Whether a process was stopped, and was not just busy.
+
+    Args:
+        passed_s: time between two looks that should come soon after each other [s].
+        worked_s: processor time of all threads of the process between them [s].
+    """
+    return passed_s > STOOD_STILL_S and worked_s < _MOST_WORK * passed_s
+
+
+def _begin_anew() -> NoReturn:
+    """Be the same program again, in the same process, as if it had been killed and started."""
+    sys.stderr.flush()
+    for name in os.listdir('/proc/self/fd'):  # noqa: PTH208  numbers, not paths
+        if int(name) > 2:  # sockets of the middleware would stay open
+            with suppress(OSError):
+                os.set_inheritable(int(name), False)
+    os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
 
 
 def _spin(

@@ -15,11 +15,39 @@ from blocks_planning.ros.graph import SUBGOAL_SELECTOR
 from blocks_planning.ros.part_node import PartNode
 from blocks_planning.ros.runtime import run
 from blocks_planning.trials import selector
+from blocks_planning.trials.messages import Message, ProposalMade
 
 
-def make_node(**options: Any) -> PartNode:
+class SubgoalSelector(PartNode):
+    """The selector, which tells a person why a proposal is not taken."""
+
+    def __init__(self, **options: Any) -> None:
+        """See :class:`PartNode`."""
+        super().__init__(SUBGOAL_SELECTOR, selector, **options)
+
+    def receive(self, message: Message) -> None:
+        """See :class:`PartNode`."""
+        if isinstance(message, ProposalMade):
+            reason = selector.reason_against(self.memory, message.proposal)
+            if reason:
+                self.refuse(reason, 'subgoal/proposal')
+                return
+        super().receive(message)
+
+    def load(self) -> dict[str, object]:
+        """See :class:`PartNode`; of the questions that were asked in the trial."""
+        waiting = [query for query in self.memory.asked if query not in self.memory.known]
+        chosen = self.memory.chosen
+        return {
+            'questions_waiting': len(waiting),
+            'questions_answered': len(self.memory.known),
+            'decisions': 0 if chosen is None else len(chosen.decisions),
+        }
+
+
+def make_node(**options: Any) -> SubgoalSelector:
     """The node, not yet spinning."""
-    return PartNode(SUBGOAL_SELECTOR, selector, **options)
+    return SubgoalSelector(**options)
 
 
 def main() -> None:

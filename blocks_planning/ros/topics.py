@@ -10,6 +10,7 @@
 | `plan` | the placements about to be carried out | latched |
 | `action`, `action/outcome` | a block to drop, and what became of it | stream |
 | `outcome` | how the trial ended; everybody stops working on it | latched |
+| `markers` | the tower in space, for viewers alone | latched |
 
 Names are relative: a namespace or a remap moves the whole graph.
 """
@@ -21,6 +22,7 @@ from typing import Any, NamedTuple
 
 from blocks_planning_msgs import msg as ros
 from rclpy.qos import QoSProfile
+from visualization_msgs.msg import MarkerArray
 
 from blocks_planning.ros import qos
 from blocks_planning.ros.conversions import board, decisions, search, trial
@@ -140,3 +142,25 @@ TOPICS = (
     ACTION_OUTCOME,
     OUTCOME,
 )
+
+
+class ViewTopic(NamedTuple):
+    """A latched topic for viewers: no part of a trial listens, and no record depends on it."""
+
+    name: str
+    ros_type: type[Any]
+
+    @property
+    def publisher_qos(self) -> QoSProfile:
+        """For who says it."""
+        return qos.latched_state()
+
+    @property
+    def subscription_qos(self) -> QoSProfile:
+        """For who listens, and is to miss none."""
+        return qos.every_latched_state()
+
+
+MARKERS = ViewTopic('markers', MarkerArray)
+
+VIEW_TOPICS = (MARKERS,)

@@ -9,7 +9,7 @@ by what this node knows, and said if it can be taken.
 | listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched), `search/result` (stream) |
 | says | `subgoal/proposal` (latched) |
 | hears too | `/diagnostics` of the nodes in its namespace |
-| parameters | `remind_period_s`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none |
+| parameters | `remind_period_s`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none; `participant`: code of the person of its trials, '': as the script says |
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ from blocks_planning.ros.topics import SEARCH_RESULT, Topic
 from blocks_planning.subgoals.human import Human
 from blocks_planning.trials.messages import Message, TrialStarted
 from blocks_planning.trials.script import read_script
+from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view.web import session
 from blocks_planning.view.web.frame import Seen
 from blocks_planning.view.web.guards import address_of
@@ -48,7 +49,8 @@ TOKEN = Parameter('token', '', 'What who looks must know; none: of the environme
 SCRIPT = Parameter(
     'script', '', 'The trial script that runs, to count its trials; none: no count.'
 )
-PARAMETERS = (HOST, PORT, TOKEN, SCRIPT)
+PARTICIPANT = Parameter('participant', '', 'Code of the person; none: as the script says.')
+PARAMETERS = (HOST, PORT, TOKEN, SCRIPT, PARTICIPANT)
 TOKEN_VARIABLE = 'BLOCKS_PLANNING_VIEW_TOKEN'
 """A token in a process's arguments could be read by everybody on the machine."""
 DIAGNOSTICS = '/diagnostics'
@@ -65,8 +67,8 @@ class TrialView(PartNode):
             ConfigurationError: also if the page can't be served there.
         """
         super().__init__(TRIAL_VIEW, session, PARAMETERS, **options)
-        script = self.values['script']
-        self._queue = Queue(read_script(Path(script)) if script else ())
+        script, participant = self.values['script'], self.values['participant']
+        self._queue = Queue(read_script(Path(script), participant) if script else ())
         self._health = NOTHING
         self._place = self._queue.place_of(None)
         self._posted: deque[tuple[Any, Future[Refused | None]]] = deque()
@@ -80,6 +82,16 @@ class TrialView(PartNode):
         self.page.start()
         if PARENT_VARIABLE not in os.environ:  # else who started this process says it
             self.get_logger().info(f'the page is at {self.page.address.url}')
+
+    @property
+    def is_busy(self) -> bool:
+        """See :class:`PartNode`."""
+        scene = self.memory.scene
+        return scene is not None and scene.status is TrialStatus.BUILDING
+
+    def load(self) -> dict[str, object]:
+        """See :class:`PartNode`."""
+        return {'browsers': self.page.clients, 'trials_kept': len(self.memory.past)}
 
     def trial_named(self, trial_id: str) -> TrialStarted | None:
         """See :class:`PartNode`; news of the trials just before are welcome too."""
@@ -161,7 +173,7 @@ class TrialView(PartNode):
 
 def main() -> None:
     """Run the node until SIGINT or SIGTERM; what is shown goes before showing it."""
-    os.nice(NICENESS)
+    os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
     run(lambda _: TrialView())
 
 

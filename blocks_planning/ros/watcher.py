@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from blocks_planning.ros.graph import WATCHER
+from blocks_planning.ros.graph import WATCHER, NodeTopics
+from blocks_planning.ros.parameters import Parameter
 from blocks_planning.ros.part_node import PartNode
 from blocks_planning.trials.messages import Message, TrialStarted
 from blocks_planning.view.scene import Scene, scene_after
@@ -27,9 +28,14 @@ class _Watching:
 class Watcher(PartNode):
     """A node that only listens; ``scene`` is what there is to see."""
 
-    def __init__(self, **options: Any) -> None:
+    def __init__(
+        self,
+        topics: NodeTopics = WATCHER,
+        parameters: tuple[Parameter, ...] = (),
+        **options: Any,
+    ) -> None:
         """See :class:`PartNode`."""
-        super().__init__(WATCHER, _Watching(), **options)
+        super().__init__(topics, _Watching(), parameters, **options)
 
     @property
     def scene(self) -> Scene | None:

@@ -1,7 +1,8 @@
 """Node ``world``: the board, the only mutable truth.
 
 Replace it by the driver of real hardware and nothing else has to change. With a ``journal_dir`` a
-world that was killed and started again goes on with the board of the running trial.
+world that was killed and started again goes on with the board of the running trial. What can't be
+written there is not done: the trial ends, and its outcome says why.
 
 | | |
 |---|---|
@@ -15,16 +16,17 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from blocks_planning.board.blocks import Placed
+from blocks_planning.errors import RecordError
 from blocks_planning.ros.graph import WORLD
 from blocks_planning.ros.journal import Journal
 from blocks_planning.ros.parameters import Parameter
-from blocks_planning.ros.part_node import PartNode
+from blocks_planning.ros.part_node import WARN_PERIOD_S, PartNode
 from blocks_planning.ros.runtime import run
 from blocks_planning.trials import world
 from blocks_planning.trials.messages import (
     Message,
     PlaceBlock,
+    PlacementOutcome,
     TrialEnded,
     TrialStarted,
     WorldState,
@@ -38,39 +40,78 @@ class World(PartNode):
     """The world, with a journal."""
 
     def __init__(self, **options: Any) -> None:
-        """See :class:`PartNode`."""
+        """See :class:`PartNode`.
+
+        Raises:
+            RecordError: if there can be no journal in its folder.
+        """
         super().__init__(WORLD, world, (JOURNAL_DIR, PLACING), **options)
         folder = self.values['journal_dir']
         self._journal = Journal(Path(folder)) if folder else None
-        self._restoring = False
+        self._lost = ''
         self._placing: PlaceBlock | None = None
         self._arm = self.create_timer(
             max(self.values['placing_s'], 1e-3), self._place, clock=self.steady
         )
         self._arm.cancel()
 
-    def take(self, message: Message) -> None:
-        """See :class:`PartNode`; a trial that was under way goes on where it was."""
-        placements: list[Placed] = []
-        running = None if self.trial is None else self.trial.trial_id
-        is_new = isinstance(message, TrialStarted) and message.trial_id != running
-        if self._journal is not None and is_new:
-            placements, warning = self._journal.begin(message.trial_id)
-            if warning:
-                self.get_logger().warning(warning)
-        super().take(message)
-        if placements:
-            self._restore(message.trial_id, placements)
-        if self._journal is not None and isinstance(message, TrialEnded):
-            self._journal.end()
-
-    def say(self, message: Message) -> None:
+    def advance(self, message: Message) -> tuple[Message, ...]:
         """See :class:`PartNode`; what is said is in the journal first."""
-        if self._restoring:
-            return
-        if self._journal is not None and isinstance(message, WorldState) and message.placements:
-            self._journal.append(message.placements[-1])
-        super().say(message)
+        before = self.memory
+        said = super().advance(message)
+        if self._journal is None:
+            return said
+        match message:
+            case TrialStarted() if said:
+                return self._resume(self._journal, message.trial_id)
+            case PlaceBlock() if said:
+                try:
+                    for state in (answer for answer in said if isinstance(answer, WorldState)):
+                        self._journal.append(state.placements[-1])
+                except RecordError as error:
+                    self.memory = before
+                    return self._failure(message, str(error))
+            case PlaceBlock() if self._lost and before.state is not None:
+                if message.sequence > before.state.sequence:
+                    return self._failure(message, self._lost)
+            case TrialEnded():
+                self._lost = ''
+                self._journal.end()
+        return said
+
+    def _resume(self, journal: Journal, trial_id: str) -> tuple[Message, ...]:
+        """Go on where a trial was; or from an empty board, and say what was lost."""
+        try:
+            placements, self._lost = journal.begin(trial_id)
+            memory = world.restored(self.memory, placements)
+            if memory is None:
+                self._lost = journal.refuse()
+            else:
+                self.memory = memory
+        except RecordError as error:
+            self._lost = str(error)
+        if self._lost:
+            self.get_logger().warning(self._lost)
+        return (self.memory.state,)
+
+    def _failure(self, action: PlaceBlock, reason: str) -> tuple[Message, ...]:
+        """No block can be placed any more."""
+        self.get_logger().error(reason, throttle_duration_sec=WARN_PERIOD_S)
+        return (PlacementOutcome(action.trial_id, action.sequence, None, reason, failed=True),)
+
+    @property
+    def is_busy(self) -> bool:
+        """See :class:`PartNode`."""
+        return self.memory.state is not None
+
+    def load(self) -> dict[str, object]:
+        """See :class:`PartNode`."""
+        state = self.memory.state
+        return {
+            'blocks_placed': 0 if state is None else state.sequence,
+            'placing': self._placing is not None,
+            'journal': self._lost or ('none' if self._journal is None else 'kept'),
+        }
 
     def receive(self, message: Message) -> None:
         """Carry out an action in its time; the arm is not stopped by another of its trial."""
@@ -85,13 +126,6 @@ class World(PartNode):
         action, self._placing = self._placing, None
         if action is not None:
             super().receive(action)
-
-    def _restore(self, trial_id: str, placements: list[Placed]) -> None:
-        self._restoring = True
-        for sequence, placed in enumerate(placements):
-            super().take(PlaceBlock(trial_id, sequence, placed.placement))
-        self._restoring = False
-        super().say(self.memory.state)
 
 
 def make_node(**options: Any) -> World:

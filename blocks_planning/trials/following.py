@@ -13,6 +13,7 @@ from functools import lru_cache
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Mask
+from blocks_planning.errors import ConfigurationError
 from blocks_planning.search.result import Problem, SolveResult
 from blocks_planning.search.solve import solve
 from blocks_planning.subgoals.decision import Decision, Query, Subgoal
@@ -33,6 +34,7 @@ def follow(spec: TrialSpec, answers: MutableMapping[Query, SolveResult]) -> Tria
             added. They are counted in the record as if they had been searched for anew.
 
     Raises:
+        ConfigurationError: for a strategy that has to ask a person.
         LimitExceeded: if the search has a limit of size and a problem is over it.
     """
     built: Mask = 0
@@ -60,6 +62,8 @@ def _decide(spec: TrialSpec, built: Mask, answers: MutableMapping[Query, SolveRe
         answer = spec.strategy.decide(spec.task, built, spec.seed, answers)
         if isinstance(answer, Decision):
             return answer
+        if not answer:
+            raise ConfigurationError(f'strategy {spec.strategy.name} waits for a person')
         for query in answer:
             problem = Problem(spec.task, *query)
             answers[query] = solve(problem, spec.search, spec.seed, spec.budget)

@@ -147,27 +147,36 @@ class PlaceBlock:
 
 @dataclass(frozen=True)
 class PlacementOutcome:
-    """What became of a :class:`PlaceBlock`; ``reason`` says why it was not accepted."""
+    """What became of a :class:`PlaceBlock`; ``reason`` says why it was not accepted.
+
+    ``failed``: it is not the block; nothing can be placed on that state any more.
+    """
 
     trial_id: str
     sequence: int
     placed: Placed | None
     reason: str = ''
+    failed: bool = False
 
 
 @dataclass(frozen=True)
 class CancelTrial:
-    """End the trial as it stands."""
+    """End the trial as it stands; ``reason`` says why if nobody asked for it."""
 
     trial_id: str
+    reason: str = ''
 
 
 @dataclass(frozen=True)
 class TrialEnded:
-    """The trial is over: nobody does anything more for it."""
+    """The trial is over: nobody does anything more for it.
+
+    ``reason`` says why it was cancelled, '' if somebody asked for it.
+    """
 
     trial_id: str
     status: TrialStatus
+    reason: str = ''
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 from blocks_planning.errors import RecordError
+from blocks_planning.trials import disk
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.status import TrialStatus
 
@@ -15,23 +15,29 @@ class RecordFile:
     """A file of trial records that survives being interrupted.
 
     A record is on disk when :meth:`append` returns. What an interrupted writer left of its last
-    line is put into a file of its own beside it, never deleted.
+    line is put into a file of its own beside it, never deleted. Nobody else writes meanwhile.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, wait_s: float = disk.LOCK_WAIT_S) -> None:
         """Open or make the file.
 
+        Args:
+            path: of the file; its folder is made.
+            wait_s: how long to wait for another process that writes it [s].
+
         Raises:
-            RecordError: if it can't be written, or has a line that is no record.
+            RecordError: if it can't be written, has a line that is no record, or another process
+                still writes it.
         """
         self._path = path
         self.finished: set[str] = set()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = path.open('ab+')
+            self._file = path.open('ab+', buffering=0)
         except OSError as error:
             raise RecordError(f'{path}: cannot be written: {error.strerror}') from None
         try:
+            disk.lock(self._file.fileno(), path, wait_s)
             self._file.seek(0)
             self._read(self._file.read())
         except RecordError:
@@ -56,11 +62,13 @@ class RecordFile:
         """Write a record and see it on disk.
 
         Raises:
-            OSError: if the disk does not take it.
+            RecordError: if the disk does not take it; the file is as it was.
         """
-        self._file.write(record.to_line().encode() + b'\n')
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        line = record.to_line().encode() + b'\n'
+        try:
+            disk.append(self._file.fileno(), line, sync=True)
+        except OSError as error:
+            raise RecordError(f'{self._path}: cannot be written: {error.strerror}') from None
         if record.status is not TrialStatus.CANCELLED:
             self.finished.add(record.spec.trial_id)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from blocks_planning.trials.messages import (
     CancelTrial,
     Message,
+    PlacementOutcome,
     SubgoalChosen,
     TrialEnded,
     TrialStarted,
@@ -49,15 +50,21 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             memory = replace(memory, state=message)
         case SubgoalChosen() if chosen is None or message.sequence > chosen.sequence:
             memory = replace(memory, chosen=message)
-        case CancelTrial():
-            memory = replace(memory, status=TrialStatus.CANCELLED)
-            return memory, (TrialEnded(trial.trial_id, memory.status),)
+        case CancelTrial(_, reason):
+            return _cancelled(memory, trial.trial_id, reason)
+        case PlacementOutcome(_, at, _, reason, failed=True) if state and at == state.sequence:
+            return _cancelled(memory, trial.trial_id, reason)
         case _:
             return memory, ()
     memory = replace(memory, status=_status(memory.state, memory.chosen))
     if memory.status is TrialStatus.BUILDING:
         return memory, ()
     return memory, (TrialEnded(trial.trial_id, memory.status),)
+
+
+def _cancelled(memory: Memory, trial_id: str, reason: str) -> tuple[Memory, tuple[Message, ...]]:
+    memory = replace(memory, status=TrialStatus.CANCELLED)
+    return memory, (TrialEnded(trial_id, memory.status, reason),)
 
 
 def _status(state: WorldState | None, chosen: SubgoalChosen | None) -> TrialStatus:

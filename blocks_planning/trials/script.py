@@ -5,6 +5,7 @@
     stimuli: [cogsci2021/5, my/towers.txt]   # addresses, as on the command line
     library: 1x2,2x1,2x2                     # optional: the paper's library if left out
     seeds: 4                                 # how many, from first_seed upwards
+    pause_s: 5                               # optional: between trials [s]
     first_seed: 0                            # optional
     budget: 100000                           # optional [states]
     searches:
@@ -23,6 +24,7 @@ directory.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -31,16 +33,19 @@ from typing import Any, NamedTuple
 from blocks_planning.board.blocks import PAPER_LIBRARY, Library, parse_library
 from blocks_planning.board.stimuli import find_stimuli
 from blocks_planning.board.task import Task
+from blocks_planning.errors import ConfigurationError
 from blocks_planning.located import Located, read_yaml
 from blocks_planning.search.randomness import MAX_SEED
 from blocks_planning.search.result import DEFAULT_BUDGET, MAX_BUDGET
 from blocks_planning.search.searches import make_search
 from blocks_planning.settings import check_whole
+from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.registry import make_strategy
 from blocks_planning.trials.spec import TrialSpec
 
 MAX_SEEDS = 1_000_000
 MAX_VALUES = 10_000
+MAX_PAUSE_S = 86_400
 MAX_TRIALS = 10_000_000
 
 
@@ -51,8 +56,24 @@ class Tower(NamedTuple):
     task: Task
 
 
-def read_script(path: Path) -> list[TrialSpec]:
-    """The trials of a script, in order.
+class Script(NamedTuple):
+    """Trials in order, and how long to wait between them [s]."""
+
+    trials: list[TrialSpec]
+    pause_s: float
+
+
+def read_script(path: Path, participant: str = '') -> list[TrialSpec]:
+    """The trials of a script; see :func:`read_session`."""
+    return read_session(path, participant).trials
+
+
+def read_session(path: Path, participant: str = '') -> Script:
+    """A script.
+
+    Args:
+        path: of the file.
+        participant: code of the person of all trials in which one scopes; '': as the script says.
 
     Raises:
         ConfigurationError: naming file, line and key, for what is unknown, missing, or out of its
@@ -64,10 +85,12 @@ def read_script(path: Path) -> list[TrialSpec]:
         'seeds',
         'searches',
         'strategies',
-        optional=('library', 'first_seed', 'budget'),
+        optional=('library', 'first_seed', 'budget', 'pause_s'),
     )
     towers, seeds = read_towers(top), read_seeds(top)
     strategies = read_planners(top['strategies'], make_strategy)
+    if participant:
+        strategies = _with_participant(path, strategies, participant)
     searches = read_planners(top['searches'], make_search)
     budget = read_budget(top)
     if len(towers) * len(seeds) * len(strategies) * len(searches) > MAX_TRIALS:
@@ -81,7 +104,24 @@ def read_script(path: Path) -> list[TrialSpec]:
     ]
     if len({spec.trial_id for spec in specs}) < len(specs):
         raise script.fail('describes a trial twice')
-    return specs
+    return Script(specs, _read_pause(top))
+
+
+def _with_participant(path: Path, strategies: list[Any], code: str) -> list[Any]:
+    if not any(isinstance(strategy, Human) for strategy in strategies):
+        raise ConfigurationError(
+            f'{path}: participant {code!r} was given, but no strategy of it is human'
+        )
+    return [replace(s, participant=code) if isinstance(s, Human) else s for s in strategies]
+
+
+def _read_pause(top: Mapping[str, Located]) -> float:
+    if 'pause_s' not in top:
+        return 0.0
+    pause_s = _number(top['pause_s'])
+    if not 0 <= pause_s <= MAX_PAUSE_S:
+        raise top['pause_s'].fail(f'expected 0 to {MAX_PAUSE_S} s, got {pause_s}')
+    return pause_s
 
 
 def read_towers(top: Mapping[str, Located]) -> list[Tower]:

@@ -11,7 +11,12 @@ from blocks_planning.board.task import Task
 from blocks_planning.search.result import SolveResult
 from blocks_planning.subgoals.decision import Decision, Query
 from blocks_planning.subgoals.human import Human, used
-from blocks_planning.subgoals.proposals import Proposal, proposed_at
+from blocks_planning.subgoals.proposals import (
+    Proposal,
+    ProposalKind,
+    proposed_at,
+    target_of,
+)
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
@@ -67,17 +72,47 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             return _go_on(replace(memory, known=known), trial.spec, state)
         case ProposalMade(_, proposal) if _is_next(memory, trial.spec, proposal):
             memory = replace(memory, proposals=(*memory.proposals, proposal))
-            return (memory, ()) if state is None else _go_on(memory, trial.spec, state)
+            return (memory, ()) if state is None else _consider(memory, trial, state, proposal)
         case Remind():
             unanswered = [query for query in memory.asked if query not in memory.known]
             return memory, tuple(SearchRequest(trial.trial_id, query) for query in unanswered)
     return memory, ()
 
 
+def reason_against(memory: Memory, proposal: Proposal) -> str:
+    """Why a person's proposal is not taken; '' if it is, or was, or waits for its state."""
+    if memory.trial is None or memory.state is None:
+        return ''
+    spec, state = memory.trial.spec, memory.state
+    if not isinstance(spec.strategy, Human):
+        return f'the strategy is {spec.strategy.name}, which asks no person'
+    taken = len(proposed_at(memory.proposals, proposal.sequence))
+    if proposal.number > taken:
+        return f'number: expected {taken}, got {proposal.number}'
+    is_new = proposal.number == taken and proposal.sequence == state.sequence
+    target = target_of(spec.task, state.built, proposal.region)
+    if is_new and proposal.kind is ProposalKind.BUILD and target == state.built:
+        return 'region: expected a target cell that is still empty'
+    return ''
+
+
 def _is_next(memory: Memory, spec: TrialSpec, proposal: Proposal) -> bool:
     """Whether a person is asked at all, and the proposals before this one were all taken."""
     earlier = proposed_at(memory.proposals, proposal.sequence)
     return isinstance(spec.strategy, Human) and proposal.number == len(earlier)
+
+
+def _consider(
+    memory: Memory, trial: TrialStarted, state: WorldState, proposal: Proposal
+) -> tuple[Memory, tuple[Message, ...]]:
+    """Take a person's word; what is known already to be unsolvable is answered once more."""
+    memory, said = _go_on(memory, trial.spec, state)
+    target = target_of(trial.spec.task, state.built, proposal.region)
+    query = Query(state.built, target)
+    is_known = proposal.kind is ProposalKind.BUILD and query in memory.known
+    if not said and is_known and proposal.sequence == state.sequence:
+        said = (SearchRequest(trial.trial_id, query),)
+    return memory, said
 
 
 def _go_on(

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from blocks_planning.board import rules
-from blocks_planning.board.blocks import format_library
+from blocks_planning.board.blocks import Placed, format_library
 from blocks_planning.board.geometry import Mask
 from blocks_planning.board.task import Task
 from blocks_planning.trials.messages import (
@@ -52,6 +53,18 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
         case PlaceBlock() if message.sequence == state.sequence:
             return _drop(memory, task, state, message)
     return memory, ()
+
+
+def restored(memory: Memory, placements: Iterable[Placed]) -> Memory | None:
+    """The world after placements that were carried out before; None if they can't have been."""
+    assert memory.state is not None
+    for sequence, placed in enumerate(placements):
+        action = PlaceBlock(memory.state.trial_id, sequence, placed.placement)
+        memory, _ = step(memory, action)
+        assert memory.state is not None
+        if memory.state.placements[sequence:] != (placed,):
+            return None
+    return memory
 
 
 def _drop(

@@ -83,6 +83,24 @@ def costs_of(scene: Scene) -> str:
     )
 
 
+def heading_of(scene: Scene, width: int, signs: Signs = palette.UNICODE) -> list[str]:
+    """What stands above a picture: stimulus and status, strategy, search, progress, costs.
+
+    Args:
+        scene: what there is to see.
+        width: of the first line at most [characters].
+        signs: that can be shown.
+    """
+    spec, status = scene.spec, STATUS_WORDS[scene.status]
+    return [
+        f'{stimulus_of(spec, width - len(status), signs)}: {status}',
+        strategy_of(spec),
+        search_of(spec),
+        progress_of(scene),
+        costs_of(scene),
+    ]
+
+
 def outcome_of(scene: Scene, signs: Signs = palette.UNICODE) -> str:
     """One line that says how a trial ended."""
     name = signs.shown(scene.spec.stimulus)
@@ -121,13 +139,19 @@ def numbers_of(candidate: Candidate) -> list[str]:
     ]
 
 
+NO_ROWS = '-'
+"""For the rows of a region that is not the rows below a height."""
+
+
 def heights_of(candidate: Candidate, width: int, signs: Signs = palette.UNICODE) -> str:
     """The heights of a candidate's regions in at most ``width`` characters, the last left out.
 
     >>> heights_of(Candidate((1, 3, 8), 9, 9, None, SolveStatus.SOLVED), width=4)
     '1 3…'
+    >>> heights_of(Candidate((), 9, 9, None, SolveStatus.SOLVED), width=4)
+    '-'
     """
-    text = ' '.join(map(str, candidate.heights))
+    text = ' '.join(map(str, candidate.heights)) or NO_ROWS
     if len(text) <= width:
         return text
     return text[:width].rpartition(' ')[0] + signs.more

@@ -7,9 +7,8 @@ same.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from io import BytesIO
-from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +19,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from blocks_planning.board.blocks import Placed
-from blocks_planning.board.geometry import Board, Cell, Mask
+from blocks_planning.board.geometry import Board
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.view import captions, palette
+from blocks_planning.view.outline import outline
 from blocks_planning.view.scene import Scene, last_scene, scenes_of
 
 CELL_INCHES = 0.5
@@ -44,6 +44,8 @@ INK, GRID, TARGET, PAPER = '#000000', '#ffffff', '#e4e4e4', '#ffffff'
 REGION_SHARE = 0.6
 """How far the colour of cells that are to be filled leans towards white."""
 
+_TITLED = ('.svg', '.pdf')
+"""These carry the outcome also as text, for tooltips and screen readers."""
 _METADATA: dict[str, dict[str, Any]] = {
     '.png': {'Software': None},
     '.svg': {'Date': None, 'Creator': 'blocks_planning'},
@@ -135,30 +137,6 @@ def draw_scene(axes: Axes, scene: Scene) -> None:
     axes.set_axis_off()
 
 
-def outline(board: Board, mask: Mask) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
-    """The border of a set of cells, as straight lines from (x, y) to (x, y) [cells]."""
-
-    def differ(one: Cell, other: Cell) -> bool:
-        return (one in cells) != (other in cells)
-
-    cells = set(board.cells(mask))
-    columns, rows = range(board.width + 1), range(board.height + 1)
-    for x in columns:
-        for low, high in _runs(differ((x - 1, row), (x, row)) for row in rows):
-            yield (x, low), (x, high)
-    for y in rows:
-        for left, right in _runs(differ((column, y - 1), (column, y)) for column in columns):
-            yield (left, y), (right, y)
-
-
-def _runs(marks: Iterable[bool]) -> Iterator[tuple[int, int]]:
-    """Where each run of true values begins, and where it is over."""
-    for marked, run in groupby(enumerate(marks), key=lambda item: item[1]):
-        if marked:
-            indices = [index for index, _ in run]
-            yield indices[0], indices[-1] + 1
-
-
 def _add_rectangles(
     axes: Axes, rectangles: Sequence[Placed], fills: Sequence[str], edge: str, line: float
 ) -> None:
@@ -190,7 +168,7 @@ def _figure(scene: Scene) -> Figure:
         (left / width, bottom / height, board_width / width, board_height / height)
     )
     draw_scene(axes, scene)
-    for line, text in enumerate(_title(scene), start=1):
+    for line, text in enumerate(captions.heading_of(scene, TITLE_CHARACTERS), start=1):
         size, weight = (11, 'bold') if line == 1 else (9, 'normal')
         written = figure.text(
             0.5,
@@ -208,18 +186,6 @@ def _figure(scene: Scene) -> Figure:
     return figure
 
 
-def _title(scene: Scene) -> list[str]:
-    spec = scene.spec
-    status = captions.STATUS_WORDS[scene.status]
-    return [
-        f'{captions.stimulus_of(spec, TITLE_CHARACTERS - len(status))}: {status}',
-        captions.strategy_of(spec),
-        captions.search_of(spec),
-        captions.progress_of(scene),
-        captions.costs_of(scene),
-    ]
-
-
 def _drawn(scene: Scene, suffix: str, dpi: int) -> bytes:
     """A file with a scene."""
     file = BytesIO()
@@ -227,7 +193,10 @@ def _drawn(scene: Scene, suffix: str, dpi: int) -> bytes:
         # The name of a stimulus may hold signs that the font lacks; they become boxes.
         warnings.filterwarnings('ignore', 'Glyph .* missing', UserWarning)
         figure = _figure(scene)
-        figure.savefig(file, format=suffix[1:], dpi=dpi, metadata=_METADATA[suffix])
+        metadata = {**_METADATA[suffix]}
+        if suffix in _TITLED:
+            metadata['Title'] = captions.outcome_of(scene)
+        figure.savefig(file, format=suffix[1:], dpi=dpi, metadata=metadata)
     return file.getvalue()
 
 

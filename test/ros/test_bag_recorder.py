@@ -20,13 +20,17 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rosbags.highlevel import AnyReader
+from std_msgs.msg import Header
 
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.ros.bag_recorder import BagRecorder
 from blocks_planning.ros.bagging import BagError
 from blocks_planning.ros.bagging.repair import is_finished, repair
 from blocks_planning.ros.bags import trials_of
-from blocks_planning.ros.topics import TOPICS, TRIAL, Topic
+from blocks_planning.ros.conversions.markers import markers_to_ros
+from blocks_planning.ros.topics import MARKERS, TOPICS, TRIAL, Topic
+from blocks_planning.view.scene import scene_of
+from blocks_planning.view.solids import solids_of
 
 COMMAND = [sys.executable, '-m', 'blocks_planning.ros.bag_recorder', '--ros-args']
 DEADLINE_S = 30.0
@@ -154,7 +158,9 @@ def test_everything_said_is_in_the_bag(
     assert before_ns <= times[0] <= times[-1] <= time.time_ns()
     with AnyReader([tmp_path / 'bag']) as reader:
         found = {
-            entry.topic.removeprefix(f'{graph.namespace}/'): entry for entry in reader.connections
+            entry.topic.removeprefix(f'{graph.namespace}/'): entry
+            for entry in reader.connections
+            if not entry.topic.endswith(f'/{MARKERS.name}')
         }
     assert {name: entry.digest for name, entry in found.items()} == hashes
     assert [one.record.status.value for one in trials_of(tmp_path / 'bag')] == ['success'] * 2
@@ -187,6 +193,33 @@ def test_burst_is_recorded_whole(
     graph.spin_until(lambda: node.count == 900)
     node.finish()
     assert len(contents(tmp_path / 'bag')) == 900
+
+
+def test_markers_are_recorded_and_no_part_of_a_trial(
+    graph: Graph, peer: Peer, said: list[Said], tmp_path: Path
+) -> None:
+    outlet = peer.node.create_publisher(MARKERS.ros_type, MARKERS.name, MARKERS.publisher_qos)
+    node = add_recorder(graph, tmp_path / 'bag')
+    peer.wait_for_listeners()
+    graph.spin_until(lambda: outlet.get_subscription_count() == 1)
+    solids = solids_of(scene_of(spec(SQUARE)))
+    array = markers_to_ros(solids, Header(frame_id='board'), cell_m=0.05)
+    for number, one in enumerate(said, start=1):
+        peer.outlets[one.topic].publish(one.data)
+        outlet.publish(array)
+        graph.spin_until(lambda: node.count == 2 * number)  # noqa: B023  called at once
+    node.finish()
+    trials = list(trials_of(tmp_path / 'bag'))
+    assert [list(trial.contradictions()) for trial in trials] == [[], []]
+    read: list[Any] = []
+    with AnyReader([tmp_path / 'bag']) as reader:
+        [connection] = [one for one in reader.connections if one.topic.endswith('/markers')]
+        for _, _, data in reader.messages([connection]):
+            read.append(reader.deserialize(data, connection.msgtype))
+    assert len(read) == len(said)
+    assert [(one.ns, one.id, one.type, one.text) for one in read[-1].markers] == [
+        (one.ns, one.id, one.type, one.text) for one in array.markers
+    ]
 
 
 def test_parameters_out_of_their_range_are_refused(graph: Graph, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import errno
 import os
 import random
@@ -665,3 +666,68 @@ def test_reading_needs_no_middleware(bag: Path) -> None:
         'assert "rclpy" not in sys.modules'
     )
     subprocess.run([sys.executable, '-c', code], check=True, timeout=60)
+
+
+# A recorder that was killed, and started again later
+
+
+def with_absence(path: Path, said: list[Said], gone: int, back: int, seed: int) -> Path:
+    """A bag whose recorder was killed before a message, and was there again before another.
+
+    It then finds one topic after the other, and hears what is latched there.
+    """
+    chance = random.Random(seed)
+    found = {topic: back + chance.randrange(30) * (seed % 3) for topic in TOPICS}
+    again = []
+    for place, one in enumerate(said[back:], start=back):
+        for topic in (topic for topic in TOPICS if found[topic] == place and topic.latched):
+            again += [earlier for earlier in said[:place] if earlier.topic is topic][-1:]
+        if place >= found[one.topic]:
+            again.append(one)
+    time_ns = START_NS
+    for part in (said[:gone], again):
+        writer = open_bag(path)
+        for one in part:
+            time_ns += 1_000_000
+            writer.add(f'/{one.topic.name}', one.data, time_ns, time_ns)
+        writer.flush()
+        os.close(writer._lock)
+    repair(path)
+    return path
+
+
+@pytest.mark.parametrize('seed', range(16))
+def test_absence_of_the_recorder_is_no_contradiction(
+    seed: int, said: list[Said], trials: list[tuple[TrialRecord, list[Said]]], tmp_path: Path
+) -> None:
+    """And of the trials that it was there for nothing is lost."""
+    chance = random.Random(seed)
+    gone = chance.randrange(1, len(said) - 1) if seed else 0
+    back = chance.randrange(gone, len(said))
+    bag = with_absence(tmp_path / 'bag', said, gone, back, seed)
+    refused: list[str] = []
+    found = list(trials_of(bag, refused.append))
+    assert refused == []
+    assert [list(one.contradictions()) for one in found] == [[] for _ in found]
+    ended = {one.record.to_line() for one in found if one.is_over}
+    at = 0
+    for record, messages in trials:
+        if at + len(messages) <= gone or at >= back + 60:
+            assert record.to_line() in ended
+        at += len(messages)
+
+
+def test_absence_hides_no_lie(said: list[Said], tmp_path: Path, bag: Path) -> None:
+    """What is there of a trial must still be what its outcome says."""
+    outcome = next(n for n, one in enumerate(said) if one.topic is OUTCOME)
+    states = [n for n, one in enumerate(said[:outcome]) if one.topic is STATE]
+
+    def lie(one: Said) -> Said:
+        if one.topic is OUTCOME and one.message.placements:
+            one.message.placements[0].column ^= 2
+        return one
+
+    told = [lie(Said(one.topic, copy.deepcopy(one.message))) for one in said]
+    found = with_absence(tmp_path / 'bag', told, states[-2] + 1, outcome, 0)
+    first = next(iter(trials_of(found)))
+    assert any('placements' in sentence for sentence in first.contradictions())

@@ -23,9 +23,12 @@ from graphs import (
     write_script,
 )
 from peers import Graph, Peer
+from rclpy.node import Node
+from rosbags.highlevel import AnyReader
 
+from blocks_planning.ros.bags import trials_of
 from blocks_planning.ros.domain import Domain
-from blocks_planning.ros.topics import TOPICS, TRIAL
+from blocks_planning.ros.topics import MARKERS, TOPICS, TRIAL
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.script import read_script
 from blocks_planning.trials.verify import contradictions
@@ -55,6 +58,8 @@ def test_script_runs_to_its_end_and_is_not_run_again(tmp_path: Path) -> None:
     assert 'Traceback' not in done.stderr
     assert 'trial 3 of 3' in done.stderr
     assert '3 of 3 trials' in done.stdout
+    assert f'Pictures: {out}/pictures\n' in done.stdout
+    assert len(list((out / 'pictures').iterdir())) == 3
     assert (tmp_path / 'bag' / 'metadata.yaml').exists()
 
     before = (out / 'trials.jsonl').stat().st_mtime_ns
@@ -63,6 +68,41 @@ def test_script_runs_to_its_end_and_is_not_run_again(tmp_path: Path) -> None:
     assert (out / 'trials.jsonl').stat().st_mtime_ns == before
     assert '3 of 3 trials' in again.stdout
     assert 'trial 1 of 3' not in again.stderr
+
+
+def test_markers_are_shown_and_recorded_when_asked_for(graph: Graph, tmp_path: Path) -> None:
+    """They reach who listens on the domain, and a bag from which the trials can be rebuilt."""
+    script, out, bag = write_script(tmp_path, seeds=3), tmp_path / 'out', tmp_path / 'bag'
+    shown: list[Any] = []
+    graph.add(lambda **options: Node('viewer', **options), namespace='/').create_subscription(
+        MARKERS.ros_type, MARKERS.name, shown.append, MARKERS.subscription_qos
+    )
+    domain = os.environ['ROS_DOMAIN_ID']
+    arguments = ('--out', out, '--bag', bag, '--domain', domain, '--pace', '0.1', '--markers')
+    with bring_up(script, *arguments, '--no-pictures') as process:
+        graph.spin_until(lambda: process.poll() is not None, deadline_s=60)
+    assert process.returncode == 0
+    assert not (out / 'pictures').exists()
+    assert record_lines(out) == local_lines(script)
+    assert [trial.record.to_line() for trial in trials_of(bag)] == local_lines(script)
+    with AnyReader([bag]) as reader:
+        [connection] = [one for one in reader.connections if one.topic == '/markers']
+    assert connection.msgcount > 3
+    assert len(shown) > 3
+    assert {one.ns for one in shown[-1].markers} >= {'ground', 'silhouette', 'blocks', 'text'}
+
+
+def test_many_trials_are_drawn_only_when_asked_for_and_only_the_first(tmp_path: Path) -> None:
+    script, out = write_script(tmp_path, seeds=17), tmp_path / 'out'
+    done = run_graph(script, '--out', out)
+    assert done.returncode == 0, done.stderr
+    assert 'Pictures' not in done.stdout
+    assert not (out / 'pictures').exists()
+
+    again = run_graph(script, '--out', out, '--pictures')
+    assert f'Pictures: {out}/pictures (of the first 16 trials; 1 left out)' in again.stdout
+    names = {f'cogsci2021-5-scoping-bfs-seed{seed}.svg' for seed in range(16)}
+    assert {path.name for path in (out / 'pictures').iterdir()} == names
 
 
 def test_exit_code_says_that_a_tower_was_not_rebuilt(tmp_path: Path) -> None:

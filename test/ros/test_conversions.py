@@ -14,6 +14,7 @@ from blocks_planning_msgs import msg as ros
 from builders import CHAIR, FRAME, NEVER_SOLVED, PLANNERS, planner_id, spec
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from persons import Person, human_spec, rows_of
 from rclpy.serialization import deserialize_message, serialize_message
 from strategies import boards, positions, solvable_tasks, tasks
 
@@ -29,12 +30,14 @@ from blocks_planning.ros.conversions.trial import (
 )
 from blocks_planning.ros.topics import OUTCOME, STATE, SUBGOAL, TOPICS, TRIAL, Topic
 from blocks_planning.search.searches import make_search
+from blocks_planning.subgoals.human import COSTS, Human
 from blocks_planning.subgoals.registry import make_strategy
 from blocks_planning.trials import scribe, searcher, selector, world
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     CancelTrial,
     Message,
+    ProposalMade,
     SubgoalChosen,
     TrialStarted,
 )
@@ -44,6 +47,8 @@ from blocks_planning.trials.spec import TrialSpec
 TOPIC_OF = {topic.kind: topic for topic in TOPICS}
 PARTS = (world, selector, searcher, scribe)
 SPEC = spec(CHAIR, lam=0.2, depth=2)
+HUMAN = human_spec(CHAIR, depth=2)
+SAID_BY_PERSON = rows_of(HUMAN, 2, 4, 6)
 BOARD = SPEC.task.board
 
 STRATEGIES = st.one_of(
@@ -54,6 +59,9 @@ STRATEGIES = st.one_of(
         st.sampled_from(['subgoal', 'action']),
     ),
     st.builds(lambda lam: make_strategy('full', {'lambda': lam}), st.floats(0.001, 1000)),
+)
+PEOPLE = st.builds(
+    Human, st.from_regex(r'[A-Za-z0-9_-]{0,32}', fullmatch=True), st.sampled_from(COSTS)
 )
 EXECUTE = st.sampled_from(['first', 'path'])
 SEARCHES = st.one_of(
@@ -81,7 +89,7 @@ SPECS = st.builds(
     TrialSpec,
     stimulus=TEXTS,
     task=tasks(),
-    strategy=STRATEGIES,
+    strategy=st.one_of(STRATEGIES, PEOPLE),
     search=SEARCHES,
     seed=st.integers(0, 2**64 - 1),
     budget=st.integers(0, 2**63 - 1),
@@ -96,7 +104,8 @@ def sent(message: Any) -> Any:
 def said_in(trial: TrialSpec) -> tuple[list[Message], TrialRecord]:
     """Everything that is said in a trial, and its record."""
     messages: list[Message] = []
-    record = run_trial(trial, observe=messages.append)
+    proposals = SAID_BY_PERSON if trial == HUMAN else ()
+    record = run_trial(trial, observe=messages.append, proposals=proposals)
     return messages, record
 
 
@@ -114,8 +123,11 @@ def from_ros(board: Board, topic: Topic, message: Any) -> Any:
 
 
 def check_all_there_and_back(trial: TrialSpec) -> set[type]:
-    messages, record = said_in(trial)
-    board = trial.task.board
+    return check_there_and_back(*said_in(trial))
+
+
+def check_there_and_back(messages: list[Message], record: TrialRecord) -> set[type]:
+    board = record.spec.task.board
     carried = [message for message in messages if type(message) in TOPIC_OF]
     for message in carried:
         arrived = sent(to_ros(board, message, record))
@@ -147,7 +159,20 @@ def test_everything_said_in_a_trial_there_and_back(rows: str, planner: dict[str,
 
 
 def test_every_topic_has_its_say_in_a_trial() -> None:
-    assert check_all_there_and_back(SPEC) == set(TOPIC_OF)
+    assert check_all_there_and_back(HUMAN) == set(TOPIC_OF)
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_what_a_person_says_there_and_back(seed: int) -> None:
+    person = Person(HUMAN, seed)
+    messages: list[Message] = []
+
+    def observe(message: Message) -> None:
+        person.observe(message)
+        messages.append(message)
+
+    record = run_trial(HUMAN, observe=observe, proposals=person)
+    check_there_and_back(messages, record)
 
 
 @pytest.mark.parametrize('planner', PLANNERS, ids=planner_id)
@@ -180,6 +205,7 @@ class Change(NamedTuple):
 def examples() -> dict[str, Any]:
     """The longest message of each topic that is said in a trial, by the name of the topic."""
     messages, record = said_in(SPEC)
+    messages += [message for message in said_in(HUMAN)[0] if isinstance(message, ProposalMade)]
     longest: dict[str, Any] = {}
     for message in messages:
         topic = TOPIC_OF.get(type(message))
@@ -398,6 +424,17 @@ REFUSED: list[tuple[str, Callable[[Any], None], str, str]] = [
     ('action/outcome', _set('status', 'maybe'), 'status', "'maybe'"),
     ('action/outcome', _set('placed.column', 9), 'placed', '9'),
     ('outcome', _set('status', 'building'), 'status', "'building'"),
+    ('subgoal/proposal', _set('sequence', 25), 'sequence', '25'),
+    ('subgoal/proposal', _set('number', 1000), 'number', '1000'),
+    ('subgoal/proposal', _set('kind', 'maybe'), 'kind', "'maybe'"),
+    ('subgoal/proposal', _set('region.cells', b'\1'), 'region.cells', '1'),
+    ('subgoal/proposal', _set('region', grid_to_ros(Board(5, 5), 0)), 'region', '5 x 5'),
+    *(
+        ('subgoal/proposal', _set('thinking_s', value), 'thinking_s', str(value))
+        for value in (-1.0, float('nan'), float('inf'))
+    ),
+    ('trial', _set('planner.participant', 'Jane'), 'planner.participant', "'Jane'"),
+    ('trial', _set('planner.costs', 'shown'), 'planner.costs', "'shown'"),
     ('subgoal', _set('decisions', []), 'decisions', '0'),
     ('subgoal', _set('status', 'none_solvable'), 'status', "'none_solvable'"),
     ('subgoal', _set('decisions[0].chosen', -2), 'decisions[0].chosen', '-2'),
@@ -407,7 +444,6 @@ REFUSED: list[tuple[str, Callable[[Any], None], str, str]] = [
     ('subgoal', _set('decisions[0].executed', 2), 'decisions[0].executed', '2'),
     ('subgoal', _set('decisions[0].candidates[0].value', float('nan')), 'value', 'nan'),
     ('subgoal', _set('decisions[0].candidates[0].value', float('-inf')), 'value', '-inf'),
-    ('subgoal', _set('decisions[0].candidates[0].rows', b''), 'rows', '[]'),
     ('subgoal', _set('decisions[0].candidates[0].rows', b'\2\1'), 'rows', '[2, 1]'),
     ('subgoal', _set('decisions[0].candidates[0].rows', b'\x11'), 'rows', '[17]'),
     ('subgoal', _set('decisions[0].candidates[0].status', 'x'), 'candidates[0].status', "'x'"),

@@ -9,7 +9,7 @@ import pytest
 from source_imports import ROOT
 
 from blocks_planning.ros.graph import GRAPH
-from blocks_planning.ros.topics import TOPICS, Topic
+from blocks_planning.ros.topics import TOPICS, VIEW_TOPICS, Topic, ViewTopic
 
 PAGE = (ROOT / 'docs' / 'ros.md').read_text(encoding='utf-8')
 MESSAGES = sorted((ROOT / 'msg_defs' / 'msg').glob('*.msg'))
@@ -33,6 +33,15 @@ def test_topic_is_told_with_type_qos_and_nodes(topic: Topic) -> None:
     assert qos == ('latched' if topic.latched else 'stream')
     assert names(source) == {node.name for node in GRAPH.values() if topic in node.says}
     assert names(listeners) == {node.name for node in GRAPH.values() if topic in node.listens}
+
+
+@pytest.mark.parametrize('topic', VIEW_TOPICS, ids=lambda topic: topic.name)
+def test_topic_for_viewers_is_told(topic: ViewTopic) -> None:
+    kind, qos, source, listeners = row(topic.name)
+    assert names(kind) == {topic.ros_type.__name__}
+    assert qos == 'latched'
+    assert names(source) == {node.name for node in GRAPH.values() if topic in node.views}
+    assert names(listeners) == {'bag_recorder'}
 
 
 @pytest.mark.parametrize('path', MESSAGES, ids=lambda path: path.stem)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from disks import disk_of
 
 from blocks_planning.board.blocks import Placed
 from blocks_planning.errors import RecordError
@@ -19,13 +20,22 @@ def journal_of(folder: Path, trial_id: str = 'a') -> Path:
     assert journal.begin(trial_id) == ([], '')
     for placed in PLACEMENTS:
         journal.append(placed)
+    journal.release()
     (path,) = folder.glob('*.journal')
     return path
 
 
+def begin(folder: Path, trial_id: str = 'a') -> tuple[list[Placed], str]:
+    """What a world that is started again finds."""
+    journal = Journal(folder)
+    found = journal.begin(trial_id)
+    journal.release()
+    return found
+
+
 def test_what_was_written_is_there_again(tmp_path: Path) -> None:
     journal_of(tmp_path)
-    assert Journal(tmp_path).begin('a') == (PLACEMENTS, '')
+    assert begin(tmp_path) == (PLACEMENTS, '')
 
 
 def test_another_trial_begins_empty_and_costs_the_first_nothing(tmp_path: Path) -> None:
@@ -42,7 +52,8 @@ def test_a_torn_last_line_is_forgotten_and_the_rest_goes_on(tmp_path: Path, cut:
     again = Journal(tmp_path)
     assert again.begin('a') == (PLACEMENTS[:-1], '')
     again.append(PLACEMENTS[-1])
-    assert Journal(tmp_path).begin('a') == (PLACEMENTS, '')
+    again.release()
+    assert begin(tmp_path) == (PLACEMENTS, '')
 
 
 @pytest.mark.parametrize(
@@ -51,7 +62,7 @@ def test_a_torn_last_line_is_forgotten_and_the_rest_goes_on(tmp_path: Path, cut:
 def test_what_is_no_journal_is_set_aside(tmp_path: Path, content: bytes) -> None:
     path = journal_of(tmp_path)
     path.write_bytes(content)
-    placements, warning = Journal(tmp_path).begin('a')
+    placements, warning = begin(tmp_path)
     assert placements == []
     assert 'is not a journal; it was set aside as' in warning
     (aside,) = tmp_path.glob('*.aside-*')
@@ -61,7 +72,7 @@ def test_what_is_no_journal_is_set_aside(tmp_path: Path, content: bytes) -> None
 def test_a_bad_line_in_the_middle_sets_the_file_aside(tmp_path: Path) -> None:
     path = journal_of(tmp_path)
     path.write_bytes(path.read_bytes().replace(b'1 16 15 0', b'1 16 x 0'))
-    placements, warning = Journal(tmp_path).begin('a')
+    placements, warning = begin(tmp_path)
     assert (placements, bool(warning)) == ([], True)
 
 
@@ -77,6 +88,59 @@ def test_a_trial_that_is_over_needs_no_journal(tmp_path: Path) -> None:
     journal.append(PLACEMENTS[0])
     journal.end()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_that_was_set_aside_is_overwritten(tmp_path: Path) -> None:
+    path = journal_of(tmp_path)
+    for content in (b'one', b'two'):
+        path.write_bytes(content)
+        begin(tmp_path)
+    assert {aside.read_bytes() for aside in tmp_path.glob('*.aside-*')} == {b'one', b'two'}
+
+
+def test_a_journal_that_can_not_be_right_is_set_aside(tmp_path: Path) -> None:
+    path = journal_of(tmp_path)
+    content = path.read_bytes()
+    journal = Journal(tmp_path)
+    journal.begin('a')
+    assert 'it was set aside as' in journal.refuse()
+    journal.append(PLACEMENTS[1])
+    journal.release()
+    (aside,) = tmp_path.glob('*.aside-*')
+    assert aside.read_bytes() == content
+    assert begin(tmp_path) == (PLACEMENTS[1:2], '')
+
+
+def test_a_full_disk_leaves_the_journal_as_it_was(tmp_path: Path) -> None:
+    """However little room there is; and when there is some again it goes on."""
+    path = journal_of(tmp_path)
+    before = path.read_bytes()
+    journal = Journal(tmp_path)
+    journal.begin('a')
+    for room in range(len(b'4 2 3 14\n')):
+        with disk_of(len(before) + room), pytest.raises(RecordError, match='cannot be written'):
+            journal.append(PLACEMENTS[2])
+        assert path.read_bytes() == before
+    journal.append(PLACEMENTS[2])
+    journal.release()
+    assert begin(tmp_path) == ([*PLACEMENTS, PLACEMENTS[2]], '')
+
+
+def test_a_full_disk_begins_no_journal(tmp_path: Path) -> None:
+    journal = Journal(tmp_path)
+    with disk_of(3), pytest.raises(RecordError, match='cannot be written'):
+        journal.begin('a')
+    with pytest.raises(RecordError, match='could not be opened when the trial began'):
+        journal.append(PLACEMENTS[0])
+    assert journal.begin('a') == ([], '')
+
+
+def test_one_at_a_time_writes_in_a_folder(tmp_path: Path) -> None:
+    first = Journal(tmp_path)
+    with pytest.raises(RecordError, match='is being written by another process'):
+        Journal(tmp_path, wait_s=0)
+    first.release()
+    Journal(tmp_path, wait_s=0)
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:

@@ -40,6 +40,7 @@ from blocks_planning.ros.graph import (
     NodeTopics,
 )
 from blocks_planning.ros.journal import Journal
+from blocks_planning.ros.marker_publisher import MarkerPublisher
 from blocks_planning.ros.topics import (
     ACTION,
     OUTCOME,
@@ -258,6 +259,7 @@ def test_world_that_was_killed_finds_its_board(graph: Graph, tmp_path: Path) -> 
     journal.begin(TRIAL_SPEC.trial_id)
     for placed in RECORD.placements[:-1]:
         journal.append(placed)
+    journal.release()
     overrides = [Parameter('journal_dir', value=str(tmp_path))]
     node = graph.add(world.make_node, parameter_overrides=overrides)
     on = Bench(graph, WORLD, node, TRIAL_SPEC)
@@ -267,7 +269,9 @@ def test_world_that_was_killed_finds_its_board(graph: Graph, tmp_path: Path) -> 
     last = len(RECORD.placements) - 1
     on.tell(PlaceBlock(TRIAL_SPEC.trial_id, last, RECORD.placements[-1].placement))
     graph.spin_until(lambda: node.memory.state.sequence == last + 1)
-    assert Journal(tmp_path).begin(TRIAL_SPEC.trial_id) == (list(RECORD.placements), '')
+    (path,) = tmp_path.glob('*.journal')
+    written = path.read_text().splitlines()[1:]
+    assert written == [' '.join(map(str, placed)) for placed in RECORD.placements]
 
 
 def test_world_takes_its_time_to_place_a_block(graph: Graph) -> None:
@@ -514,6 +518,7 @@ def make(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, graph: Graph) -> Calla
         **dict(zip(PART_IDS, (make_node for _, make_node in PARTS), strict=True)),
         'trial_orchestrator': lambda **options: TrialOrchestrator(threading.Event(), **options),
         'bag_recorder': BagRecorder,
+        'marker_publisher': MarkerPublisher,
         'trial_view': TrialView,
     }
 
@@ -595,6 +600,8 @@ def test_parameters_of_a_wrong_type_or_value_are_refused(
         ('action_searcher', 'workers:=many', 'parameter workers must be'),
         ('trial_orchestrator', 'script:=nowhere.yaml', 'nowhere.yaml: cannot be read'),
         ('bag_recorder', 'flush_period_s:=1e9', 'parameter flush_period_s must be'),
+        ('marker_publisher', 'cell_size:=0.0', 'parameter cell_size must be'),
+        ('marker_publisher', "frame_id:=''", 'parameter frame_id must be a name'),
         ('trial_view', 'host:=nowhere.invalid', 'cannot be served at nowhere.invalid:0: '),
         ('trial_view', 'token:=short', 'token must be 16 or more letters'),
     ],
@@ -645,7 +652,10 @@ def test_docstring_names_topics_and_parameters(name: str, make: Callable[..., An
         assert set(topics.listens) == set(TOPICS)
     else:
         assert named(rows['listens']) == {topic.name: topic.latched for topic in topics.listens}
-    assert named(rows.get('says', '')) == {topic.name: topic.latched for topic in topics.says}
+    assert named(rows.get('says', '')) == {
+        **{topic.name: topic.latched for topic in topics.says},
+        **{topic.name: True for topic in topics.views},
+    }
     parameters = re.findall(r'(?:^|; )`(\w+)`', rows['parameters'])
     assert parameters == list(own_parameters(make(name)))
     assert ('action' in rows) == (name == 'trial_orchestrator')

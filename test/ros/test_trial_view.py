@@ -241,6 +241,15 @@ def test_counts_the_trials_of_its_script(graph: Graph, tmp_path: Path) -> None:
     assert seen_place(on) == (1, 3, (specs[2],))
 
 
+def test_counts_the_trials_of_the_person_who_is_named(graph: Graph, tmp_path: Path) -> None:
+    """They have other ids than those of the script alone."""
+    script = write_script(tmp_path, strategies=[{'name': 'human'}])
+    (trial,) = read_script(script, 'P09')
+    on = bench(graph, trial, script=str(script), participant='P09')
+    on.tell(TrialStarted(trial.trial_id, trial))
+    assert seen_place(on) == (0, 1, ())
+
+
 def seen_place(on: ViewBench) -> Place:
     """What the page is shown of the script."""
     return on.node._mailbox.seen.place

@@ -463,6 +463,30 @@ def test_scribe_has_no_record_before_a_trial() -> None:
         scribe.Memory().record()
 
 
+def test_scribe_ends_a_trial_that_the_world_can_not_go_on_with() -> None:
+    """With what the world says, and only on the state that it says it of."""
+    memory, _ = tell(scribe, [HEARD[0], STATES[0], STATES[1]])
+    failed = PlacementOutcome(TRIAL.trial_id, 1, None, 'the arm is broken', failed=True)
+    for stale in (replace(failed, sequence=0), replace(failed, sequence=2)):
+        assert scribe.step(memory, stale) == (memory, ())
+    assert scribe.step(memory, replace(failed, failed=False)) == (memory, ())
+    memory, said = scribe.step(memory, failed)
+    assert said == (TrialEnded(TRIAL.trial_id, TrialStatus.CANCELLED, 'the arm is broken'),)
+    assert memory.record().placements == STATES[1].placements
+
+
+def test_world_is_restored_by_placements_that_can_be_only() -> None:
+    memory, _ = tell(world, [HEARD[0]])
+    assert isinstance(memory, world.Memory)
+    for state in STATES:
+        restored = world.restored(memory, state.placements)
+        assert restored is not None
+        assert restored.state == state
+    first, *rest = STATES[-1].placements
+    assert world.restored(memory, [first._replace(row=first.row + 1), *rest]) is None
+    assert world.restored(memory, [first, Placed(9, 9, 0, 0)]) is None
+
+
 def test_scribe_ends_a_cancelled_trial_as_it_stands() -> None:
     for length in range(1, len(HEARD) - 1):
         memory, before = tell(scribe, HEARD[:length])

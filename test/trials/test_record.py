@@ -39,7 +39,7 @@ KEYS = [
     *('format', 'version', 'trial_id', 'stimulus', 'width', 'height', 'silhouette', 'library'),
     *('strategy', 'lambda', 'commit', 'search', 'search_settings', 'seed', 'budget', 'status'),
     *('blocks', 'subgoals', 'action_planning_cost', 'subgoal_planning_cost', 'solution_cost'),
-    *('placements', 'decisions'),
+    *('placements', 'decisions', 'proposals'),
 ]
 # Three decisions, in the first several candidates, the first of them unsolved.
 SAMPLE = record_json(CHAIR, lam=0.2, depth=2)
@@ -232,7 +232,7 @@ def test_wrong_type_is_refused(tmp_path: Path, path: Keys, key: str) -> None:
     for wrong in WRONG:
         if path and any(wrong is free or wrong == free for free in FREE.get(key, ())):
             continue
-        if wrong == [] and key in ('candidates', 'placements') and path:
+        if wrong == [] and (key == 'proposals' or (key in ('candidates', 'placements') and path)):
             continue
         message = refused(tmp_path, json.dumps(changed((*path, key), wrong)))
         names = (key, 'trial_id', 'blocks', 'subgoals', 'cost', 'expected format', 'setting')

@@ -9,16 +9,18 @@ from pathlib import Path
 
 import pytest
 from builders import CHAIR, spec
+from disks import disk_of
 from source_imports import ROOT
 
 from blocks_planning.board.blocks import PAPER_LIBRARY, Block
 from blocks_planning.board.stimuli import find_stimuli
 from blocks_planning.errors import ConfigurationError, RecordError
 from blocks_planning.search.result import DEFAULT_BUDGET
+from blocks_planning.subgoals.human import Human
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.recordfile import RecordFile
-from blocks_planning.trials.script import read_script
+from blocks_planning.trials.script import read_script, read_session
 from blocks_planning.trials.spec import TrialSpec
 
 GOOD = """\
@@ -281,3 +283,57 @@ def test_records_of_a_file_are_json(tmp_path: Path) -> None:
     file.append(first)
     file.close()
     assert json.loads(path.read_text()) == first.to_json()
+
+
+def test_pause_between_trials(tmp_path: Path) -> None:
+    path = tmp_path / 'trials.yaml'
+    path.write_text(GOOD)
+    assert read_session(path).pause_s == 0.0
+    path.write_text(GOOD + 'pause_s: 2.5\n')
+    assert read_session(path).pause_s == 2.5
+    assert read_session(path).trials == read_script(path)
+
+
+@pytest.mark.parametrize('pause', ['-1', '1e9', 'long', '.nan', '[1]', 'true'])
+def test_pause_that_can_not_be_is_refused(pause: str, tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match=r"line 7, key 'pause_s': expected"):
+        read(tmp_path, GOOD + f'pause_s: {pause}\n')
+
+
+def test_participant_takes_the_place_of_the_scripted_one(tmp_path: Path) -> None:
+    path = tmp_path / 'trials.yaml'
+    path.write_text(GOOD + '  - {name: human, participant: nobody, costs: hidden}\n')
+    planner, person = read_script(path, 'P07')
+    assert planner.strategy == read(tmp_path, GOOD)[0].strategy
+    assert person.strategy == Human('P07', 'hidden')
+    path.write_text(GOOD + '  - {name: human, costs: hidden}\n')
+    assert read_script(path)[1].strategy == Human('', 'hidden')
+    for code, said in (('Jane Doe', 'participant must be a code'), ('x' * 33, 'participant must')):
+        with pytest.raises(ConfigurationError, match=said):
+            read_script(path, code)
+
+
+def test_full_disk_leaves_the_records_as_they_were(tmp_path: Path) -> None:
+    """However little room there is; and when there is some again it goes on."""
+    path = tmp_path / 'trials.jsonl'
+    first, second, _ = records()
+    file = RecordFile(path)
+    file.append(first)
+    before = path.read_bytes()
+    for room in (0, 1, 100, len(second.to_line())):
+        with disk_of(len(before) + room), pytest.raises(RecordError, match='cannot be written'):
+            file.append(second)
+        assert path.read_bytes() == before
+    assert file.finished == {first.spec.trial_id}
+    file.append(second)
+    file.close()
+    assert path.read_text().splitlines() == [first.to_line(), second.to_line()]
+
+
+def test_one_at_a_time_writes_records(tmp_path: Path) -> None:
+    path = tmp_path / 'trials.jsonl'
+    file = RecordFile(path)
+    with pytest.raises(RecordError, match='is being written by another process'):
+        RecordFile(path, wait_s=0)
+    file.close()
+    RecordFile(path, wait_s=0).close()

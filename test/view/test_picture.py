@@ -5,6 +5,7 @@ from dataclasses import replace
 from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from hypothesis import given
@@ -15,7 +16,8 @@ from PIL import Image, ImageSequence
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.view import captions, palette, picture
-from blocks_planning.view.picture import draw_scene, outline, save_picture
+from blocks_planning.view.outline import outline
+from blocks_planning.view.picture import draw_scene, save_picture
 from blocks_planning.view.scene import last_scene, scenes_of
 
 BEGINNINGS = {'.png': b'\x89PNG', '.svg': b'<?xml', '.pdf': b'%PDF', '.gif': b'GIF89a'}
@@ -141,7 +143,7 @@ def test_any_name_can_be_a_title(tower_spec, recorded, tmp_path, name):
 
 def test_title_says_what_and_how(tower_spec, recorded):
     record = recorded(tower_spec())
-    assert picture._title(last_scene(record)) == [
+    assert captions.heading_of(last_scene(record), picture.TITLE_CHARACTERS) == [
         'cogsci2021/9: success',
         'scoping, lambda 0.002',
         'bfs, depth 3',
@@ -184,3 +186,37 @@ def test_outline_parts_the_cells_from_the_rest(data, width, height):
 
 def test_pyplot_is_not_used():
     assert 'pyplot' not in Path(picture.__file__).read_text(encoding='utf-8')
+
+
+@pytest.mark.parametrize('size', [(4, 4), (16, 16)])
+def test_vector_picture_has_every_block_with_its_edge_and_colour(
+    filled_spec, recorded, tmp_path, size
+):
+    scene = last_scene(recorded(filled_spec(*size)))
+    save_picture(scene.record, tmp_path / 'tower.svg')
+    root = ElementTree.parse(tmp_path / 'tower.svg').getroot()
+    edged = [
+        (found['fill'], [float(number) for number in re.findall(r'[\d.]+', path.get('d', ''))])
+        for path in root.iterfind('.//{*}path')
+        if (found := style_of(path)).get('stroke') == picture.INK and found['fill'] != 'none'
+    ]
+    assert [fill for fill, _ in edged] == palette.fills_of(scene.blocks)
+    cell = picture.CELL_INCHES * 72
+    for block, (_, corners) in zip(scene.blocks, edged, strict=True):
+        xs, ys = corners[::2], corners[1::2]
+        assert max(xs) - min(xs) == pytest.approx(cell * block.placed.width)
+        assert max(ys) - min(ys) == pytest.approx(cell * block.placed.height)
+
+
+def style_of(element: ElementTree.Element) -> dict[str, str]:
+    """The properties in the style of an element of an SVG."""
+    pairs = (part.partition(':') for part in element.get('style', '').split(';'))
+    return {name.strip(): value.strip() for name, _, value in pairs}
+
+
+@pytest.mark.parametrize('name', ['cogsci2021/9', '<&> "x"'])
+def test_vector_picture_says_the_outcome_as_text_too(tower_spec, recorded, tmp_path, name):
+    record = replace(recorded(tower_spec()), spec=tower_spec(name=name))
+    save_picture(record, tmp_path / 'tower.svg')
+    root = ElementTree.parse(tmp_path / 'tower.svg').getroot()
+    assert root.findtext('{*}title') == captions.outcome_of(last_scene(record))

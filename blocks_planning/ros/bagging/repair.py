@@ -67,6 +67,30 @@ def is_finished(bag: Path) -> bool:
     return all(read_summary(file) is not None for file in files)
 
 
+class FileBegin(NamedTuple):
+    """When the first message of a file came [ns since 1970], and which file of its bag it is."""
+
+    time_ns: int
+    number: int
+
+
+def file_begins(bag: Path) -> list[FileBegin]:
+    """When each MCAP file of a bag begins that has messages, in order.
+
+    The numbers are those of the names: files without messages, and those that were put aside,
+    count. A single file counts for nothing.
+    """
+    found: list[FileBegin] = []
+    for path in _files_of(bag) if bag.is_dir() else []:
+        summary = read_summary(path)
+        number = path.stem.rpartition('_')[2]
+        if summary is not None and summary.messages:
+            found.append(
+                FileBegin(summary.start_ns, int(number) if number.isdecimal() else len(found))
+            )
+    return sorted(found)
+
+
 def repair(bag: Path) -> list[Repair]:
     """Make a bag whole, if it is not: a directory, or a single MCAP file.
 

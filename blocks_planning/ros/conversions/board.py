@@ -68,10 +68,11 @@ def action_from_ros(board: Board, message: ros.PlaceBlock) -> PlaceBlock:
 def placement_outcome_to_ros(board: Board, message: PlacementOutcome) -> ros.PlacementOutcome:
     """See :class:`PlacementOutcome`."""
     kind, placed = ros.PlacementOutcome, message.placed
+    refused = kind.STATUS_FAILED if message.failed else kind.STATUS_IMPOSSIBLE
     return kind(
         trial_id=message.trial_id,
         sequence=message.sequence,
-        status=kind.STATUS_IMPOSSIBLE if placed is None else kind.STATUS_PLACED,
+        status=refused if placed is None else kind.STATUS_PLACED,
         reason=message.reason or 'the block rests where it fell',
         placed=ros.Placement() if placed is None else placed_to_ros(placed),
     )
@@ -80,8 +81,10 @@ def placement_outcome_to_ros(board: Board, message: PlacementOutcome) -> ros.Pla
 def placement_outcome_from_ros(board: Board, message: ros.PlacementOutcome) -> PlacementOutcome:
     """See :class:`PlacementOutcome`."""
     kind = ros.PlacementOutcome
-    status = word(str, message.status, 'status', (kind.STATUS_PLACED, kind.STATUS_IMPOSSIBLE))
-    if status == kind.STATUS_IMPOSSIBLE:
-        return PlacementOutcome(message.trial_id, message.sequence, None, message.reason)
+    statuses = (kind.STATUS_PLACED, kind.STATUS_IMPOSSIBLE, kind.STATUS_FAILED)
+    status = word(str, message.status, 'status', statuses)
+    if status != kind.STATUS_PLACED:
+        failed = status == kind.STATUS_FAILED
+        return PlacementOutcome(message.trial_id, message.sequence, None, message.reason, failed)
     placed = placed_from_ros(board, message.placed, 'placed')
     return PlacementOutcome(message.trial_id, message.sequence, placed)

@@ -100,12 +100,12 @@ _OUTCOME_REASONS = {
 }
 
 
-def outcome_to_ros(trial_id: str, record: TrialRecord) -> ros.TrialOutcome:
-    """How a trial ended, from its record."""
+def outcome_to_ros(trial_id: str, record: TrialRecord, reason: str = '') -> ros.TrialOutcome:
+    """How a trial ended, from its record; ``reason`` in the place of the usual one."""
     return ros.TrialOutcome(
         trial_id=trial_id,
         status=record.status.value,
-        reason=_OUTCOME_REASONS[record.status],
+        reason=reason or _OUTCOME_REASONS[record.status],
         blocks=record.blocks,
         subgoals=record.subgoals,
         action_planning_cost=record.action_planning_cost,

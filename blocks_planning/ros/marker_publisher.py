@@ -1,0 +1,78 @@
+"""Node ``marker_publisher``: the tower in space, for RViz and Foxglove.
+
+Every array begins by deleting everything, so that the latest one alone shows the whole scene; see
+:mod:`blocks_planning.view.solids` for what there is. When scenes follow one another faster than
+they are published, those between are never seen.
+
+| | |
+|---|---|
+| listens | `trial`, `state`, `subgoal`, `outcome` (latched) |
+| says | `markers` (latched) |
+| parameters | `remind_period_s`; `cell_size`: side of a cell in metres; `frame_id`: of all markers; `publish_period_s`: a change is shown after at most so long |
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rclpy.duration import Duration
+from std_msgs.msg import Header
+
+from blocks_planning.errors import ConfigurationError
+from blocks_planning.ros.conversions.markers import markers_to_ros
+from blocks_planning.ros.graph import MARKER_PUBLISHER
+from blocks_planning.ros.parameters import Parameter
+from blocks_planning.ros.part_node import ACKNOWLEDGE_S
+from blocks_planning.ros.runtime import run
+from blocks_planning.ros.topics import MARKERS
+from blocks_planning.ros.watcher import Watcher
+from blocks_planning.view.scene import Scene
+from blocks_planning.view.solids import solids_of
+
+CELL_SIZE = Parameter('cell_size', 0.05, 'Side of a cell [m].', (1e-4, 100.0))
+FRAME_ID = Parameter('frame_id', 'board', 'Coordinate frame of all markers.')
+PUBLISH_PERIOD = Parameter(
+    'publish_period_s', 0.05, 'A change is shown after at most so long [s].', (0.02, 60.0)
+)
+
+
+class MarkerPublisher(Watcher):
+    """Shows the latest scene if it is another one than was shown last."""
+
+    def __init__(self, **options: Any) -> None:
+        """See :class:`PartNode`.
+
+        Raises:
+            ConfigurationError: also for a frame without a name.
+        """
+        super().__init__(MARKER_PUBLISHER, (CELL_SIZE, FRAME_ID, PUBLISH_PERIOD), **options)
+        if not self.values['frame_id']:
+            raise ConfigurationError(
+                f"node {self.get_name()}: parameter frame_id must be a name, got ''"
+            )
+        self._shown: Scene | None = None
+        self._outlet = self.create_publisher(MARKERS.ros_type, MARKERS.name, MARKERS.publisher_qos)
+        self.create_timer(self.values['publish_period_s'], self._show, clock=self.steady)
+
+    def _show(self) -> None:
+        """Publish the scene, unless it is there to see already."""
+        if self.scene is None or self.scene is self._shown:
+            return
+        self._shown = self.scene
+        header = Header(stamp=self.get_clock().now().to_msg(), frame_id=self.values['frame_id'])
+        solids = solids_of(self.scene)
+        self._outlet.publish(markers_to_ros(solids, header, self.values['cell_size']))
+
+    def finish(self) -> None:
+        """Before the node is gone: show how the last trial ended."""
+        self._show()
+        self._outlet.wait_for_all_acked(Duration(seconds=ACKNOWLEDGE_S))
+
+
+def main() -> None:
+    """Run the node until SIGINT or SIGTERM."""
+    run(lambda _: MarkerPublisher())
+
+
+if __name__ == '__main__':
+    main()

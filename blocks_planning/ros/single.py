@@ -1,0 +1,56 @@
+"""One node of a name at a time: a second one would be told the same, and do it again.
+
+The claim is a socket without a file, which Linux takes away with the process, however that ends.
+It holds among the processes of one machine.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import socket
+import sys
+import time
+
+from blocks_planning.errors import LimitExceeded
+
+CLAIM_WAIT_S = 3.0
+"""For as long as a process may take to go that was told to."""
+_LOOK_S = 0.05
+
+
+def claim_name(domain: int, name: str, wait_s: float = CLAIM_WAIT_S) -> socket.socket | None:
+    """Claim a node's name for as long as the socket is open.
+
+    Args:
+        domain: the ROS domain.
+        name: fully qualified.
+        wait_s: how long to wait for the one that has it [s].
+
+    Returns:
+        the claim; None where there is no such thing: elsewhere than on Linux
+
+    Raises:
+        LimitExceeded: if another process still has it.
+    """
+    if sys.platform != 'linux':
+        return None
+    digest = hashlib.sha256(f'{domain} {name}'.encode()).hexdigest()[:32]
+    claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    deadline = time.monotonic() + wait_s
+    while not _is_bound(claim, f'\0blocks_planning/{digest}'):
+        if time.monotonic() >= deadline:
+            claim.close()
+            raise LimitExceeded(
+                f'node {name} runs already in ROS domain {domain} on this machine: end it, or '
+                'name another namespace'
+            )
+        time.sleep(_LOOK_S)
+    return claim
+
+
+def _is_bound(claim: socket.socket, address: str) -> bool:
+    try:
+        claim.bind(address)
+    except OSError:
+        return False
+    return True
