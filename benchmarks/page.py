@@ -19,8 +19,9 @@ from threading import Event, Thread
 import yaml
 from aiohttp import ClientError, ClientSession, WSMsgType
 
-from benchmarks.graph import DEADLINE_S, _process, _wait_for_records
+from benchmarks.graph import DEADLINE_S, _wait_for_records
 from benchmarks.measure import Figure
+from benchmarks.processes import process
 from blocks_planning.ros.domain import Domain
 from blocks_planning.ros.reserving import ReservedPort
 
@@ -67,12 +68,12 @@ def _rate(domain: int, seeds: int, way: str) -> tuple[float, float]:
             command += ['--view', '--view-port', str(port.number)]
         if way == LOOKED_AT:
             looker.look_at(port.number)
-        with _process(command) as process:
-            first = _wait_for_records(process, records, 1)
+        with process(command) as running:
+            first = _wait_for_records(running, records, 1)
             begun = looker.frames
-            last = _wait_for_records(process, records, 16 * seeds)
+            last = _wait_for_records(running, records, 16 * seeds)
             seen = looker.frames - begun
-            process.wait(DEADLINE_S)
+            running.wait(DEADLINE_S)
     return (16 * seeds - 1) / (last - first), seen / (last - first)
 
 
