@@ -49,7 +49,7 @@ BAG_RECORDER = NodeTopics('bag_recorder', TOPICS, ())
 MARKER_PUBLISHER = NodeTopics('marker_publisher', (TRIAL, STATE, SUBGOAL, OUTCOME), (), (MARKERS,))
 TRIAL_VIEW = NodeTopics(
     'trial_view',
-    (TRIAL, STATE, SEARCH_RESULT, PROPOSAL, SUBGOAL, OUTCOME),
+    (TRIAL, STATE, PROPOSAL, SUBGOAL, OUTCOME),
     (PROPOSAL,),
 )
 WATCHER = NodeTopics('watcher', (TRIAL, STATE, SUBGOAL, OUTCOME), ())

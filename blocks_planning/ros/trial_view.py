@@ -6,9 +6,9 @@ by what this node knows, and said if it can be taken.
 
 | | |
 |---|---|
-| listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched), `search/result` (stream) |
+| listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched) |
 | says | `subgoal/proposal` (latched) |
-| hears too | `/diagnostics` of the nodes in its namespace |
+| hears too | `/diagnostics` of the nodes in its namespace; `search/result`, unless no trial of its script is a person's: answers are many |
 | parameters | `remind_period_s`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none; `participant`: code of the person of its trials, '': as the script says |
 """
 
@@ -18,6 +18,8 @@ import os
 import time
 from collections import deque
 from concurrent.futures import Future
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +36,7 @@ from blocks_planning.ros.topics import SEARCH_RESULT, Topic
 from blocks_planning.subgoals.human import Human
 from blocks_planning.trials.messages import Message, TrialStarted
 from blocks_planning.trials.script import read_script
+from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view.web import session
 from blocks_planning.view.web.frame import Seen
@@ -68,7 +71,10 @@ class TrialView(PartNode):
         """
         super().__init__(TRIAL_VIEW, session, PARAMETERS, **options)
         script, participant = self.values['script'], self.values['participant']
-        self._queue = Queue(read_script(Path(script), participant) if script else ())
+        specs = read_script(Path(script), participant) if script else []
+        self._queue = Queue(specs)
+        if not script or any(_is_persons(spec) for spec in specs):
+            self._hear_answers()
         self._health = NOTHING
         self._place = self._queue.place_of(None)
         self._posted: deque[tuple[Any, Future[Refused | None]]] = deque()
@@ -102,7 +108,7 @@ class TrialView(PartNode):
         """See :class:`PartNode`; answers that no person waits for are left alone: they are many."""
         if topic is SEARCH_RESULT:
             trial = self.trial_named(message.trial_id)
-            if trial is not None and not isinstance(trial.spec.strategy, Human):
+            if trial is not None and not _is_persons(trial.spec):
                 return
         super()._receive(topic, message)
 
@@ -114,6 +120,14 @@ class TrialView(PartNode):
             if self.memory.trial_id != before.trial_id:
                 self._place = self._queue.place_of(self.memory.trial_id)
             self._show()
+
+    def _hear_answers(self) -> None:
+        self.create_subscription(
+            SEARCH_RESULT.ros_type,
+            SEARCH_RESULT.name,
+            partial(self._receive, SEARCH_RESULT),
+            SEARCH_RESULT.subscription_qos,
+        )
 
     def _show(self) -> None:
         self._mailbox.put(Seen(self.memory, self._health, self._place))
@@ -171,9 +185,25 @@ class TrialView(PartNode):
         self.page.stop()
 
 
-def main() -> None:
-    """Run the node until SIGINT or SIGTERM; what is shown goes before showing it."""
+def _is_persons(spec: TrialSpec) -> bool:
+    return isinstance(spec.strategy, Human)
+
+
+def stand_back() -> None:
+    """Let every other process go first: what is shown must not wait for being shown.
+
+    Where the system schedules by session, the niceness of a process counts inside its session
+    only; a session of its own, as the bring-up gives it, has one too.
+    """
     os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
+    if os.getsid(0) == os.getpid():
+        with suppress(OSError):  # no such thing here
+            Path('/proc/self/autogroup').write_text(str(NICENESS), encoding='ascii')
+
+
+def main() -> None:
+    """Run the node until SIGINT or SIGTERM."""
+    stand_back()
     run(lambda _: TrialView())
 
 

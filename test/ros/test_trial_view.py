@@ -45,7 +45,8 @@ SCOPED = spec(CHAIR, lam=0.2, depth=2)
 BY_PERSON = replace(SCOPED, strategy=Human('P01'))
 BOARD = SCOPED.task.board
 SEAT = Proposal(0, 0, ProposalKind.BUILD, BOARD.rows_below(4), 1.25)
-KINDS = tuple(topic.kind for topic in TRIAL_VIEW.listens)
+HEARS = TRIAL_VIEW._replace(listens=(*TRIAL_VIEW.listens, SEARCH_RESULT))
+KINDS = tuple(topic.kind for topic in HEARS.listens)
 
 
 def heard(trial: Any, *proposals: Proposal) -> list[Message]:
@@ -65,7 +66,7 @@ def bench(graph: Graph, trial: Any = SCOPED, **parameters: Any) -> ViewBench:
     """The node with its peer."""
     overrides = [Parameter(key, value=value) for key, value in parameters.items()]
     node = graph.add(TrialView, parameter_overrides=overrides)
-    return ViewBench(graph, TRIAL_VIEW, node, trial)
+    return ViewBench(graph, HEARS, node, trial)
 
 
 def tell_all(on: Bench, trial: Any) -> None:
@@ -232,8 +233,18 @@ class Teller(Node):
         self.outlet = self.create_publisher(DiagnosticArray, DIAGNOSTICS, 10)
 
 
+@pytest.mark.parametrize(('strategy', 'hears'), [('none', 0), ('human', 1)])
+def test_answers_are_heard_if_a_person_may_wait_for_them(
+    strategy: str, hears: int, graph: Graph, tmp_path: Path
+) -> None:
+    script = write_script(tmp_path, strategies=[{'name': strategy}])
+    parameters = [Parameter('script', value=str(script))]
+    node = graph.add(TrialView, parameter_overrides=parameters)
+    assert node.count_subscribers(node.resolve_topic_name(SEARCH_RESULT.name)) == hears
+
+
 def test_counts_the_trials_of_its_script(graph: Graph, tmp_path: Path) -> None:
-    script = write_script(tmp_path, seeds=3)
+    script = write_script(tmp_path, seeds=3, strategies=[{'name': 'human'}])
     specs = read_script(script)
     on = bench(graph, specs[1], script=str(script))
     assert seen_place(on) == (None, 3, tuple(specs))
