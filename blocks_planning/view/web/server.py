@@ -24,7 +24,7 @@ from blocks_planning.view.web.guards import HEADERS, Address, RateLimit, is_same
 from blocks_planning.view.web.pictures import replay_json, summary_json
 from blocks_planning.view.web.proposing import Refused
 
-FRAME_S = 0.05
+FRAME_S = 0.1
 """Frames are not closer than this [s]."""
 QUIET_S = 1.0
 """So often a frame is sent when there is nothing new [s]."""

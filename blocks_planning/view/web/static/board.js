@@ -72,14 +72,16 @@ export class Board {
       && same(blocks[kept], this.blocks[kept])) kept += 1;
     const layer = this.layers.blocks;
     while (layer.childElementCount > kept) layer.lastChild.remove();
-    for (const block of blocks.slice(kept)) layer.append(this.#block(block));
+    // One block more drops into its place; where many come at once, nobody could follow.
+    const drops = kept === this.blocks.length && blocks.length === kept + 1;
+    for (const block of blocks.slice(kept)) layer.append(this.#block(block, drops));
     this.blocks = blocks;
   }
 
-  #block({ width, height, column, row, subgoal, fill, ink }) {
+  #block({ width, height, column, row, subgoal, fill, ink }, drops) {
     const y = this.trial.height - row - height;
     const gap = 0.035;
-    return svg('g', { class: 'block new' },
+    return svg('g', { class: drops ? 'block new' : 'block' },
       svg('rect', {
         x: column + gap, y: y + gap, width: width - 2 * gap, height: height - 2 * gap, rx: 0.07, fill,
       }),
