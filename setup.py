@@ -10,6 +10,7 @@ SHARE = f'share/{NAME}'
 NODES = (
     *('world', 'subgoal_selector', 'action_searcher', 'trial_orchestrator', 'bag_recorder'),
     'marker_publisher',
+    'trial_view',
 )
 
 
@@ -42,7 +43,7 @@ setup(
     maintainer_email='maintainers@blocks-planning.example',
     python_requires='>=3.10',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
-    package_data={NAME: ['py.typed', 'analysis/templates/*.html']},
+    package_data={NAME: ['py.typed', 'analysis/templates/*.html', 'view/web/static/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),
@@ -54,6 +55,7 @@ setup(
     # named in package.xml only: there is no distribution called rclpy.
     install_requires=[
         'PyYAML>=6.0.1',
+        'aiohttp>=3.9.1',
         'click>=8.1.6',
         'distributed>=2022.12.1',
         'jinja2>=3.1.2',
@@ -69,7 +71,9 @@ setup(
         'rosbags>=0.11',
         'scipy>=1.11.4',
     ],
-    extras_require={'test': ['hypothesis>=6.98', 'mcap-ros2-support>=0.6', 'pytest>=7.4.4']},
+    extras_require={
+        'test': ['hypothesis>=6.98', 'mcap-ros2-support>=0.6', 'playwright>=1.40', 'pytest>=7.4.4']
+    },
     entry_points={
         'console_scripts': [
             'blocks-planning = blocks_planning.cli:main',

@@ -28,6 +28,7 @@ LAYERS = [
 LEVEL = {part: level for level, parts in enumerate(LAYERS) for part in parts}
 ROS = re.compile(r'rclpy|rclpy_.*|ament_.*|launch(_.*)?|rosidl_.*|.*_(msgs|srvs|interfaces)')
 CONFINED = {
+    'aiohttp': {'view'},
     'matplotlib': {'analysis', 'view'},
     'click': {'cli', 'view'},
     'rich': {'cli', 'view'},

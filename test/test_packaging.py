@@ -23,6 +23,7 @@ import blocks_planning
 # ROS package, and its wheel like that with ros- before it. rosdep has no key for some.
 NAMES: dict[str, tuple[str, str | None]] = {
     'PIL': ('pillow', 'python3-pil'),
+    'aiohttp': ('aiohttp', 'python3-aiohttp'),
     'click': ('click', 'python3-click'),
     'dask': ('distributed', None),
     'jinja2': ('jinja2', 'python3-jinja2'),
@@ -291,6 +292,7 @@ def test_all_of_the_package_is_installed(prefix: Path) -> None:
     there = {path.relative_to(init.parent) for path in init.parent.rglob('*')}
     package = ROOT / PACKAGE
     here = {path.relative_to(package) for path in package.rglob('*.py')} | {Path('py.typed')}
+    here |= {path.relative_to(package) for path in package.glob('view/web/static/*')}
     assert here - there == set()
 
 

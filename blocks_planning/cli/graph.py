@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import socket
+import sys
+import threading
 import time
+import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,11 +32,14 @@ _EXAMPLES = """\b
 Examples:
   blocks-planning run config/trials/demo.yaml
   blocks-planning run my_trials.yaml --out results --bag results/bag
+  blocks-planning run config/trials/demo.yaml --view --pace 0.3
 """
 _PATH = click.Path(path_type=Path)
 _FRAMES_PER_S = 8
 _MOST_PICTURES = 16
 """Of a script that has no more trials pictures are drawn unasked."""
+_SERVED_WITHIN_S = 60.0
+_LOOK_PERIOD_S = 0.2
 
 
 @click.command(epilog=_EXAMPLES)
@@ -47,6 +55,16 @@ _MOST_PICTURES = 16
     callback=refuse_nan,
     help='Seconds that placing a block takes, to watch it.  [default: 0]',
 )
+@click.option('--view', is_flag=True, help='Serve a page that shows it live.')
+@click.option(
+    '--view-host',
+    default='127.0.0.1',
+    show_default=True,
+    help='Where the page is served; off this machine it asks for a token.',
+)
+@click.option(
+    '--view-port', type=click.IntRange(0, 65535), default=0, help='[default: a free one]'
+)
 @click.option('--participant', default='', help='Code of the person who scopes in this session.')
 @click.option('--markers', is_flag=True, help='Show the towers to RViz and Foxglove.')
 @click.option(
@@ -61,6 +79,9 @@ def run(
     namespace: str,
     domain: int | None,
     pace: float,
+    view: bool,
+    view_host: str,
+    view_port: int,
     participant: str,
     markers: bool,
     pictures: bool | None,
@@ -76,7 +97,8 @@ def run(
         from blocks_planning.ros.bringup import Bringup, BringupSpec
     except ImportError as error:
         raise BlocksPlanningError(f'ROS 2 is not installed here: {error}') from None
-    spec = BringupSpec(script, out, bag, namespace, domain, pace, participant, markers)
+    page = (view_host, view_port) if view else None
+    spec = BringupSpec(script, out, bag, namespace, domain, pace, participant, markers, page)
     records = RecordFile(spec.records)
     wanted = {trial.trial_id for trial in specs}
     done = len(wanted & records.finished)
@@ -84,6 +106,11 @@ def run(
     progress = _Progress(RecordTail(spec.records), len(specs), done)
     bringup = Bringup(spec)
     click.echo(f'To look into the graph: {bringup.look_in}', err=True)
+    if bringup.page is not None:
+        click.echo(f'The page: {bringup.page.url}', err=True)
+        if sys.stdin.isatty() and (os.environ.get('DISPLAY') or os.environ.get('WAYLAND_DISPLAY')):
+            place = (bringup.page.host, bringup.page.port)
+            _open_when_served(bringup.page.url, place)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     ended: list[TrialRecord] = []
     try:
@@ -96,6 +123,28 @@ def run(
         _draw(ended, out / 'pictures')
     successes = sum(record.status is TrialStatus.SUCCESS for record in ended)
     return int(successes < len(specs))
+
+
+def _open_when_served(url: str, place: tuple[str, int]) -> None:
+    """Open a page in a browser as soon as somebody answers at its place."""
+
+    def wait() -> None:
+        end = time.monotonic() + _SERVED_WITHIN_S
+        while time.monotonic() < end:
+            if _is_served(place):
+                webbrowser.open(url)
+                return
+            time.sleep(_LOOK_PERIOD_S)
+
+    threading.Thread(target=wait, name='browser', daemon=True).start()
+
+
+def _is_served(place: tuple[str, int]) -> bool:
+    try:
+        socket.create_connection(place, timeout=1.0).close()
+    except OSError:
+        return False
+    return True
 
 
 def _summarise(path: Path, wanted: set[str]) -> list[TrialRecord]:

@@ -15,12 +15,15 @@ from rclpy.signals import SignalHandlerOptions
 
 from blocks_planning.errors import BlocksPlanningError
 from blocks_planning.ros.domain import Domain
-from blocks_planning.ros.graph import WATCHER
+from blocks_planning.ros.graph import TRIAL_VIEW, WATCHER
 from blocks_planning.ros.processes import NodeProcess, stop_all
+from blocks_planning.ros.reserving import ReservedPort
 from blocks_planning.ros.runtime import BAD_INPUT
 from blocks_planning.ros.trial_orchestrator import RECORDS, WAIT_FOR
+from blocks_planning.ros.trial_view import TOKEN_VARIABLE
 from blocks_planning.ros.watcher import Watcher
 from blocks_planning.view.scene import Scene
+from blocks_planning.view.web.guards import Address, address_of
 
 _SPIN_S = 0.05
 
@@ -38,6 +41,7 @@ class BringupSpec:
         placing_s: how long placing a block takes [s].
         participant: code of the person who scopes, '' for what the script says.
         markers: whether the tower is shown as markers, for RViz and Foxglove.
+        view: host and port of the page, port 0 for a free one; None for no page.
     """
 
     script: Path
@@ -48,6 +52,7 @@ class BringupSpec:
     placing_s: float = 0.0
     participant: str = ''
     markers: bool = False
+    view: tuple[str, int] | None = None
 
     @property
     def records(self) -> Path:
@@ -69,6 +74,12 @@ class Bringup:
             self._names.append('bag_recorder')
         if spec.markers:
             self._names.append('marker_publisher')
+        self._port: ReservedPort | None = None
+        self.page: Address | None = None
+        if spec.view is not None:
+            self._names.append(TRIAL_VIEW.name)
+            self._port = ReservedPort(*spec.view)
+            self.page = address_of(spec.view[0], self._port.number)
         self._others = [self._process(name) for name in self._names]
         self._orchestrator = self._process('trial_orchestrator')
         self.watcher: Watcher | None = None
@@ -107,9 +118,18 @@ class Bringup:
                 'out_dir': self._spec.out,
                 'wait_for': f'[{", ".join([*self._names, WATCHER.name])}]',
             }
+        environment = self._environment
+        if name == TRIAL_VIEW.name and self.page is not None:
+            parameters = {
+                'host': self.page.host,
+                'port': self.page.port,
+                'script': self._spec.script,
+                'participant': repr(self._spec.participant),
+            }
+            environment = {**environment, TOKEN_VARIABLE: self.page.token}
         for key, value in parameters.items():
             arguments += ['-p', f'{key}:={value}']
-        return NodeProcess(name, arguments, self._environment)
+        return NodeProcess(name, arguments, environment)
 
     def run(self, on_tick: Callable[[Scene | None], None]) -> int:
         """Run the script to its end; always take all processes down again.
@@ -151,6 +171,8 @@ class Bringup:
                 self._keep_alive()
         finally:
             stop_all(self._processes)
+            if self._port is not None:
+                self._port.release()
             executor.shutdown(timeout_sec=_SPIN_S)
             for number, handler in before.items():
                 signal.signal(number, handler)

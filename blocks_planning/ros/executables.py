@@ -49,5 +49,10 @@ def marker_publisher() -> None:
     _start('marker_publisher')
 
 
+def trial_view() -> None:
+    """The page."""
+    _start('trial_view')
+
+
 if __name__ == '__main__':
     _start(sys.argv.pop(1))

@@ -47,6 +47,11 @@ TRIAL_ORCHESTRATOR = NodeTopics(
 )
 BAG_RECORDER = NodeTopics('bag_recorder', TOPICS, ())
 MARKER_PUBLISHER = NodeTopics('marker_publisher', (TRIAL, STATE, SUBGOAL, OUTCOME), (), (MARKERS,))
+TRIAL_VIEW = NodeTopics(
+    'trial_view',
+    (TRIAL, STATE, PROPOSAL, SUBGOAL, OUTCOME),
+    (PROPOSAL,),
+)
 WATCHER = NodeTopics('watcher', (TRIAL, STATE, SUBGOAL, OUTCOME), ())
 
 GRAPH = {
@@ -58,9 +63,10 @@ GRAPH = {
         TRIAL_ORCHESTRATOR,
         BAG_RECORDER,
         MARKER_PUBLISHER,
+        TRIAL_VIEW,
         WATCHER,
     )
 }
 
-VIEWERS = (MARKER_PUBLISHER.name, WATCHER.name)
+VIEWERS = (MARKER_PUBLISHER.name, TRIAL_VIEW.name, WATCHER.name)
 """Who only looks: a script waits for them at its beginning, but no trial ends because they go."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from functools import partial
 from typing import Any, Protocol
 
@@ -19,6 +20,7 @@ from blocks_planning.ros.peers import Peers
 from blocks_planning.ros.topics import TRIAL, Topic
 from blocks_planning.trials.consistency import Consistency
 from blocks_planning.trials.messages import Message, Remind, TrialEnded, TrialStarted
+from blocks_planning.trials.spec import TrialSpec
 
 REMIND_PERIOD = Parameter(
     'remind_period_s',
@@ -45,7 +47,12 @@ class PartNode(GuardedNode):
     A message that can't be, or does not fit its trial, is refused with a warning and counted; one
     of a trial that is not known yet waits; everything else is for the part to judge. What the
     node has latched is said again while there is no news: a queue that was flooded has lost it.
+
+    Attributes:
+        MOST_KNOWN: trials that messages are taken of, the one that runs and those just before.
     """
+
+    MOST_KNOWN = 1
 
     def __init__(
         self,
@@ -66,7 +73,7 @@ class PartNode(GuardedNode):
         self.memory = part.Memory()
         self._inbox = Inbox()
         self._has_news = False
-        self._fits: Consistency | None = None
+        self._known: OrderedDict[str, Consistency] = OrderedDict()
         self._latched: dict[Topic, Any] = {}
         self._said = {topic.kind: topic for topic in topics.says}
         events = PublisherEventCallbacks(matched=self._on_match)
@@ -77,17 +84,21 @@ class PartNode(GuardedNode):
             for topic in topics.says
         }
         for topic in topics.listens:
-            self.create_subscription(
-                topic.ros_type,
-                topic.name,
-                partial(self._receive, topic),
-                topic.subscription_qos,
-                raw=True,
-            )
+            self.listen(topic)
         self.create_timer(self.values['remind_period_s'], self._remind, clock=self.steady)
         self.topics = topics
         self.peers = Peers(self)
         self._diagnostics = Diagnostics(self, self.health)
+
+    def listen(self, topic: Topic) -> None:
+        """Subscribe to a topic."""
+        self.create_subscription(
+            topic.ros_type,
+            topic.name,
+            partial(self._receive, topic),
+            topic.subscription_qos,
+            raw=True,
+        )
 
     def take(self, message: Message) -> None:
         """Let the part step, and say what it says."""
@@ -135,8 +146,15 @@ class PartNode(GuardedNode):
     def begin(self, trial: TrialStarted) -> None:
         """Take note of the trial that runs."""
         if self.trial is None or self.trial.trial_id != trial.trial_id:
-            self._fits = Consistency(trial.spec)
             self.trial = trial
+            self._known.setdefault(trial.trial_id, Consistency(trial.spec))
+            self._known.move_to_end(trial.trial_id)
+            while len(self._known) > self.MOST_KNOWN:
+                self._known.popitem(last=False)
+
+    def cares_for(self, topic: Topic, spec: TrialSpec) -> bool:
+        """Whether messages of a topic matter in a trial."""
+        return True
 
     @property
     def board(self) -> Board:
@@ -175,15 +193,14 @@ class PartNode(GuardedNode):
             message = read_message(topic.ros_type, data)
             if topic is TRIAL:
                 converted = topic.from_ros(message)
-            elif self.trial is None or message.trial_id != self.trial.trial_id:
+            elif (known := self._known.get(message.trial_id)) is None:
                 self._inbox.hold(message.trial_id, (topic, data), len(data))
                 return
-            elif topic.needs_board:
-                converted = topic.from_ros(self.board, message)
+            elif not self.cares_for(topic, known.spec):
+                return
             else:
-                converted = topic.from_ros(message)
-            if self._fits is not None and topic is not TRIAL:
-                self._fits.check(converted)
+                converted = _convert(topic, known.spec.task.board, message)
+                known.check(converted)
         except InvalidInput as error:
             self.refuse(f'a message on {topic.name}', error)
         else:
@@ -201,3 +218,10 @@ class PartNode(GuardedNode):
                 if message.trial_id == self.trial.trial_id:
                     self._outlets[topic.kind].publish(message)
         self._has_news = False
+
+
+def _convert(topic: Topic, board: Board, message: Any) -> Message:
+    """What a ROS message of a trial on a board says."""
+    converted: Message
+    converted = topic.from_ros(board, message) if topic.needs_board else topic.from_ros(message)
+    return converted

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from rclpy.node import Node
 
 from blocks_planning.ros.graph import GRAPH, NodeTopics
-from blocks_planning.ros.topics import TOPICS, VIEW_TOPICS, Topic, ViewTopic
+from blocks_planning.ros.topics import PROPOSAL, TOPICS, VIEW_TOPICS, Topic, ViewTopic
 
 _UNKNOWN = '_NODE_NAME_UNKNOWN_'
 _MOST_NAMES = 10_000
@@ -57,7 +57,7 @@ class Peers:
         heard = {_End(True, topic.name) for topic in topics.listens}
         sought = heard | {_End(False, topic.name) for topic in topics.says}
         ends = self._ends()
-        unsaid = heard.difference(*ends.values())
+        unsaid = heard.difference(*ends.values()) - _NOT_ALWAYS_SAID
         present = sorted(name for name in ends if name != topics.name and ends[name] & sought)
         missing = [name for name in GRAPH if name not in present and _wanted(name) & unsaid]
         return Around(present, missing)
@@ -92,6 +92,10 @@ class _End(NamedTuple):
 
     says: bool
     topic: str
+
+
+_NOT_ALWAYS_SAID = {_End(True, PROPOSAL.name)}
+"""There need not be a person, nor a page."""
 
 
 def _wanted(name: str) -> set[_End]:

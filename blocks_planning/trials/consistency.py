@@ -33,11 +33,15 @@ class Contradiction(InvalidInput):
 
 
 class Consistency:
-    """What was said of a trial so far, as far as later messages must fit it."""
+    """What was said of a trial so far, as far as later messages must fit it.
+
+    Attributes:
+        spec: what the trial is.
+    """
 
     def __init__(self, spec: TrialSpec) -> None:
         """Nothing was said yet."""
-        self._spec = spec
+        self.spec = spec
         self._placements: tuple[Placed, ...] = ()
         self._states: list[Mask] = [0]
         self._decisions: tuple[DecisionRecord, ...] = ()
@@ -54,7 +58,7 @@ class Consistency:
             case SubgoalChosen():
                 self._check_subgoal(message)
             case SearchRequest(_, query):
-                if query.region & ~query.built & ~self._spec.task.silhouette:
+                if query.region & ~query.built & ~self.spec.task.silhouette:
                     raise Contradiction('region: asks for cells that are not to be filled')
             case SearchAnswer(_, _, result):
                 self._check_blocks(result.placements, 'placements')
@@ -68,15 +72,15 @@ class Consistency:
         self._check_status(state)
         if len(state.placements) > len(self._placements):
             self._placements = state.placements
-            self._states = rules.states_along(self._spec.task.board, 0, state.placements)
+            self._states = rules.states_along(self.spec.task.board, 0, state.placements)
 
     def _check_status(self, state: WorldState) -> None:
         """A world need not see that it is stuck; then the planner gives up."""
-        is_complete = state.built == self._spec.task.silhouette
+        is_complete = state.built == self.spec.task.silhouette
         if (state.status is TrialStatus.SUCCESS) != is_complete:
             raise Contradiction(f'status: {state.status.value} is not what the placements lead to')
         if state.status is TrialStatus.STUCK:
-            reached = status_of(self._spec.task, state.built)
+            reached = status_of(self.spec.task, state.built)
             if reached is not TrialStatus.STUCK:
                 raise Contradiction('status: something can still be placed')
 
@@ -90,7 +94,7 @@ class Consistency:
         for index, entry in enumerate(decisions):
             for subgoal in entry.decision.subgoals:
                 self._check_blocks(subgoal.placements, f'decisions[{index}]')
-        if chosen.proposals and not isinstance(self._spec.strategy, Human):
+        if chosen.proposals and not isinstance(self.spec.strategy, Human):
             raise Contradiction('proposals: no person takes part')
         if not _is_one_way(*map(_decided, (self._decisions, decisions))):
             raise Contradiction('decisions: do not go on from those before')
@@ -98,14 +102,14 @@ class Consistency:
         for sequence, built in [*begun, (chosen.sequence, chosen.built)]:
             if sequence < len(self._states) and self._states[sequence] != built:
                 raise Contradiction(f'built: is not the state after {sequence} placements')
-        least, most = places[-1], places[-1] if chosen.index == 0 else self._spec.task.board.size
+        least, most = places[-1], places[-1] if chosen.index == 0 else self.spec.task.board.size
         if not least <= chosen.sequence <= most:
             raise Contradiction(f'sequence: must be {least} to {most} after these decisions')
         if len(decisions) >= len(self._decisions):
             self._decisions = decisions
 
     def _check_blocks(self, placements: Iterable[Placed], field: str) -> None:
-        library = self._spec.task.library
+        library = self.spec.task.library
         for placed in placements:
             if placed.placement.block not in library:
                 block, known = placed.placement.block, format_library(library)

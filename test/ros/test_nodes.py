@@ -51,6 +51,7 @@ from blocks_planning.ros.topics import (
     TRIAL,
 )
 from blocks_planning.ros.trial_orchestrator import TrialOrchestrator
+from blocks_planning.ros.trial_view import TrialView
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
@@ -519,6 +520,7 @@ def make(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, graph: Graph) -> Calla
         'trial_orchestrator': lambda **options: TrialOrchestrator(threading.Event(), **options),
         'bag_recorder': BagRecorder,
         'marker_publisher': MarkerPublisher,
+        'trial_view': TrialView,
     }
 
     def call(name: str, **parameters: Any) -> Any:
@@ -601,6 +603,8 @@ def test_parameters_of_a_wrong_type_or_value_are_refused(
         ('bag_recorder', 'flush_period_s:=1e9', 'parameter flush_period_s must be'),
         ('marker_publisher', 'cell_size:=0.0', 'parameter cell_size must be'),
         ('marker_publisher', "frame_id:=''", 'parameter frame_id must be a name'),
+        ('trial_view', 'host:=nowhere.invalid', 'cannot be served at nowhere.invalid:0: '),
+        ('trial_view', 'token:=short', 'token must be 16 or more letters'),
     ],
 )
 def test_process_with_bad_parameters_ends_with_one_line(

@@ -41,6 +41,7 @@ from blocks_planning.ros.runtime import stood_still
 from blocks_planning.ros.single import claim_name
 from blocks_planning.ros.topics import OUTCOME, SEARCH_REQUEST, STATE, TRIAL
 from blocks_planning.ros.trial_orchestrator import TrialOrchestrator
+from blocks_planning.ros.trial_view import TrialView
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
@@ -139,6 +140,7 @@ def test_every_node_says_how_it_is(graph: Graph, tmp_path: Path) -> None:
         'action_searcher': graph.add(ActionSearcher),
         'bag_recorder': graph.add(BagRecorder, parameter_overrides=parameters),
         'marker_publisher': graph.add(MarkerPublisher),
+        'trial_view': graph.add(TrialView),
     }
     graph.spin_until(lambda: listener.of(nodes['world']))
     assert listener.of(nodes['world'])[0]['peers_missing'] == 'trial_orchestrator'

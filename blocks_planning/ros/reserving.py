@@ -1,0 +1,45 @@
+"""A port that is known before the process that will listen at it runs."""
+
+from __future__ import annotations
+
+import socket
+
+from blocks_planning.errors import ConfigurationError
+
+
+class ReservedPort:
+    """A port that nobody else is given, and at which a process of this user may listen.
+
+    The socket is bound but never listens, and so does not stand in the way of one that does; also
+    not of a second one, when the process that listened was killed and is started again.
+    """
+
+    def __init__(self, host: str, port: int = 0) -> None:
+        """Take a port; 0: any that is free.
+
+        Raises:
+            ConfigurationError: if the host is no address of this machine, or the port is taken.
+        """
+        try:
+            self._socket = _bound(host, port)
+        except OSError as error:
+            raise ConfigurationError(
+                f'the page cannot be served at {host}:{port}: {error.strerror}'
+            ) from None
+        self.number: int = self._socket.getsockname()[1]
+
+    def release(self) -> None:
+        """Let others have it."""
+        self._socket.close()
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    family, kind, protocol, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    made = socket.socket(family, kind, protocol)
+    try:
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        made.bind(place)
+    except OSError:
+        made.close()
+        raise
+    return made

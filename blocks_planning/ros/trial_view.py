@@ -1,0 +1,204 @@
+"""Node ``trial_view``: a page that shows what happens, and on which a person scopes.
+
+It listens to the graph and puts what there is to see into a mailbox; a server in a thread of its
+own shows it (:mod:`blocks_planning.view.web`). What a person proposes on the page is judged here,
+by what this node knows, and said if it can be taken.
+
+| | |
+|---|---|
+| listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched) |
+| says | `subgoal/proposal` (latched) |
+| hears too | `/diagnostics` of the nodes in its namespace; `search/result`, unless no trial of its script is a person's: answers are many |
+| parameters | `remind_period_s`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none; `participant`: code of the person of its trials, '': as the script says |
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+from concurrent.futures import Future
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+
+from blocks_planning.errors import InvalidInput
+from blocks_planning.ros import qos
+from blocks_planning.ros.diagnostics import TOPIC as DIAGNOSTICS
+from blocks_planning.ros.graph import TRIAL_VIEW
+from blocks_planning.ros.guarded import read_message
+from blocks_planning.ros.parameters import Parameter
+from blocks_planning.ros.part_node import PartNode
+from blocks_planning.ros.processes import PARENT_VARIABLE
+from blocks_planning.ros.runtime import run
+from blocks_planning.ros.topics import SEARCH_RESULT, Topic
+from blocks_planning.subgoals.human import Human
+from blocks_planning.trials.messages import Message
+from blocks_planning.trials.script import read_script
+from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.trials.status import TrialStatus
+from blocks_planning.view.web import session
+from blocks_planning.view.web.frame import Seen
+from blocks_planning.view.web.guards import address_of
+from blocks_planning.view.web.health import NOTHING, health_after
+from blocks_planning.view.web.proposing import Posted, Refused, judge, parse
+from blocks_planning.view.web.queue import Queue
+from blocks_planning.view.web.server import Mailbox, PageServer
+
+HOST = Parameter('host', '127.0.0.1', 'Name or number to listen at; a token off this machine.')
+PORT = Parameter('port', 0, 'Port to listen at; 0: any that is free.', (0, 65535))
+TOKEN = Parameter('token', '', 'What who looks must know; none: of the environment, or a new one.')
+SCRIPT = Parameter(
+    'script', '', 'The trial script that runs, to count its trials; none: no count.'
+)
+PARTICIPANT = Parameter('participant', '', 'Code of the person; none: as the script says.')
+PARAMETERS = (HOST, PORT, TOKEN, SCRIPT, PARTICIPANT)
+TOKEN_VARIABLE = 'BLOCKS_PLANNING_VIEW_TOKEN'
+"""A token in a process's arguments could be read by everybody on the machine."""
+NICENESS = 10
+
+
+class TrialView(PartNode):
+    """A session that is watched, with a server that shows it."""
+
+    MOST_KNOWN = 1 + session.MOST_LATE
+
+    def __init__(self, **options: Any) -> None:
+        """See :class:`PartNode`.
+
+        Raises:
+            ConfigurationError: also if the page can't be served there.
+        """
+        super().__init__(TRIAL_VIEW, session, PARAMETERS, **options)
+        script, participant = self.values['script'], self.values['participant']
+        specs = read_script(Path(script), participant) if script else []
+        self._queue = Queue(specs)
+        if not script or any(_is_persons(spec) for spec in specs):
+            self.listen(SEARCH_RESULT)
+        self._health = NOTHING
+        self._place = self._queue.place_of(None)
+        self._posted: deque[tuple[Any, Future[Refused | None]]] = deque()
+        self._wake = self.create_guard_condition(self._take_posted)
+        self._mailbox = Mailbox()
+        self.create_subscription(
+            DiagnosticArray, DIAGNOSTICS, self._receive_health, qos.stream(), raw=True
+        )
+        token = self.values['token'] or os.environ.get(TOKEN_VARIABLE, '')
+        address = address_of(self.values['host'], self.values['port'], token)
+        self.page = PageServer(address, self._mailbox, self._post)
+        self._show()
+        self.page.start()
+        if PARENT_VARIABLE not in os.environ:  # else who started this process says it
+            self.get_logger().info(f'the page is at {self.page.address.url}')
+
+    @property
+    def is_busy(self) -> bool:
+        """See :class:`PartNode`."""
+        scene = self.memory.scene
+        return scene is not None and scene.status is TrialStatus.BUILDING
+
+    def load(self) -> dict[str, object]:
+        """See :class:`PartNode`."""
+        return {'browsers': self.page.clients, 'trials_kept': len(self.memory.past)}
+
+    def cares_for(self, topic: Topic, spec: TrialSpec) -> bool:
+        """See :class:`PartNode`; answers that no person waits for are left alone: they are many."""
+        return topic is not SEARCH_RESULT or _is_persons(spec)
+
+    def take(self, message: Message) -> None:
+        """See :class:`PartNode`."""
+        before = self.memory
+        super().take(message)
+        if self.memory is not before:
+            if self.memory.trial_id != before.trial_id:
+                self._place = self._queue.place_of(self.memory.trial_id)
+            self._show()
+
+    def _show(self) -> None:
+        self._mailbox.put(Seen(self.memory, self._health, self._place))
+
+    def _receive_health(self, data: bytes) -> None:
+        try:
+            self._take_health(read_message(DiagnosticArray, data))
+        except InvalidInput as error:
+            self.refuse(f'a message on {DIAGNOSTICS}', error)
+
+    def _take_health(self, message: DiagnosticArray) -> None:
+        """What a node of this graph says of itself."""
+        space = self.get_namespace().rstrip('/') + '/'
+        for status in message.status:
+            if status.name.startswith(space):
+                self._health = health_after(
+                    self._health,
+                    status.name.removeprefix(space),
+                    int.from_bytes(status.level, 'little'),
+                    status.message,
+                    ((value.key, value.value) for value in status.values),
+                    time.monotonic(),
+                )
+        self._show()
+
+    def _post(self, data: Any) -> Future[Refused | None]:
+        """From the thread of the server: what a person has sent, to be judged in the node's own."""
+        answer: Future[Refused | None] = Future()
+        self._posted.append((data, answer))
+        self._wake.trigger()
+        return answer
+
+    def _take_posted(self) -> None:
+        while self._posted:
+            data, answer = self._posted.popleft()
+            if answer.set_running_or_notify_cancel():
+                try:
+                    answer.set_result(self._propose(data))
+                except InvalidInput as error:
+                    answer.set_exception(error)
+
+    def _propose(self, data: Any) -> Refused | None:
+        """Say a proposal, if it can be taken; else why not."""
+        if self.trial is None:
+            return Refused('stale', 'no trial has begun')
+        posted = parse(data, self.board)
+        refused = judge(self.memory, posted)
+        if refused is None:
+            self._say_posted(posted)
+        return refused
+
+    def _say_posted(self, posted: Posted) -> None:
+        self.say(posted.said)
+        self.take(posted.said)
+        if posted.is_again:
+            self.memory = session.with_told_again(self.memory)
+            self._show()
+
+    def finish(self) -> None:
+        """Before the node is gone: tell the browsers that this was all."""
+        self.page.stop()
+
+
+def _is_persons(spec: TrialSpec) -> bool:
+    return isinstance(spec.strategy, Human)
+
+
+def stand_back() -> None:
+    """Let every other process go first: what is shown must not wait for being shown.
+
+    Where the system schedules by session, the niceness of a process counts inside its session
+    only; a session of its own, as the bring-up gives it, has one too.
+    """
+    os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
+    if os.getsid(0) == os.getpid():
+        with suppress(OSError):  # no such thing here
+            Path('/proc/self/autogroup').write_text(str(NICENESS), encoding='ascii')
+
+
+def main() -> None:
+    """Run the node until SIGINT or SIGTERM."""
+    stand_back()
+    run(lambda _: TrialView())
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,1 @@
+"""A page that shows the graph live, and on which a person scopes."""

@@ -1,0 +1,128 @@
+"""What the page sends when a person has decided, and whether it can be taken."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from blocks_planning.board.geometry import EMPTY, FILLED, Board, Mask
+from blocks_planning.board.task import Task
+from blocks_planning.errors import ConfigurationError, InvalidInput
+from blocks_planning.settings import shown
+from blocks_planning.subgoals.proposals import Proposal, ProposalKind, target_of
+from blocks_planning.trials.messages import ProposalMade
+from blocks_planning.view.web.session import Session, turn_of
+
+MOST_IN_A_STATE = 1000
+"""Proposals; nobody thinks of so many."""
+_KEYS = {'trial_id', 'sequence', 'number', 'kind', 'region', 'thinking_s'}
+
+
+class MalformedProposal(InvalidInput):
+    """What was sent is no proposal."""
+
+
+class Refused(NamedTuple):
+    """A proposal that can't be taken.
+
+    Attributes:
+        code: a word for programs: stale, waiting, empty, outside, built.
+        reason: a sentence for people.
+    """
+
+    code: str
+    reason: str
+
+
+class Posted(NamedTuple):
+    """A proposal as it was sent; ``is_again`` if it was taken before, and is told once more."""
+
+    said: ProposalMade
+    is_again: bool
+
+
+def parse(data: object, board: Board) -> Posted:
+    """Read what the page has sent.
+
+    Args:
+        data: decoded JSON; the region is a picture, rows of '#' and '.', top row first.
+        board: of the trial that runs.
+
+    Raises:
+        MalformedProposal: naming the key.
+    """
+    if not isinstance(data, dict) or not _KEYS <= data.keys() <= _KEYS | {'again'}:
+        raise MalformedProposal(f'expected an object with the keys {", ".join(sorted(_KEYS))}')
+    kinds = [kind.value for kind in ProposalKind]
+    if data['kind'] not in kinds:
+        raise MalformedProposal(f'kind: expected {" or ".join(kinds)}, got {shown(data["kind"])}')
+    if not isinstance(data['trial_id'], str):
+        raise MalformedProposal(f'trial_id: expected a text, got {shown(data["trial_id"])}')
+    if type(data.get('again', False)) is not bool:
+        raise MalformedProposal(f'again: expected true or false, got {shown(data["again"])}')
+    seconds = data['thinking_s']
+    if type(seconds) not in (int, float):
+        raise MalformedProposal(f'thinking_s: expected a number, got {shown(seconds)}')
+    try:
+        proposal = Proposal(
+            sequence=_whole(data, 'sequence', board.size),
+            number=_whole(data, 'number', MOST_IN_A_STATE - 1),
+            kind=ProposalKind(data['kind']),
+            region=_region(data['region'], board),
+            thinking_s=float(seconds),
+        )
+    except (ConfigurationError, OverflowError):
+        raise MalformedProposal(
+            f'thinking_s: expected a finite number of 0 or more, got {shown(seconds)}'
+        ) from None
+    return Posted(ProposalMade(data['trial_id'], proposal), data.get('again', False))
+
+
+def _whole(data: dict[str, Any], key: str, most: int) -> int:
+    value = data[key]
+    if type(value) is not int or not 0 <= value <= most:
+        raise MalformedProposal(f'{key}: expected a number from 0 to {most}, got {shown(value)}')
+    return value
+
+
+def _region(rows: object, board: Board) -> Mask:
+    if (
+        not isinstance(rows, list)
+        or len(rows) != board.height
+        or not all(isinstance(row, str) and len(row) == board.width for row in rows)
+        or set().union(*rows) - {FILLED, EMPTY}
+    ):
+        raise MalformedProposal(
+            f'region: expected {board.height} rows of {board.width} cells, each # or .'
+        )
+    return board.parse(rows)
+
+
+def judge(session: Session, posted: Posted) -> Refused | None:
+    """Whether a proposal can be taken now; None if it can."""
+    turn, (said, is_again) = turn_of(session), posted
+    proposal = said.proposal
+    if (
+        session.scene is None
+        or turn is None
+        or (said.trial_id, proposal.sequence, proposal.number)
+        != (session.trial_id, turn.sequence, turn.number)
+    ):
+        return Refused('stale', 'the tower has changed meanwhile')
+    if is_again:
+        return None
+    if turn.is_waiting and proposal.kind is not ProposalKind.GIVE_UP:
+        return Refused('waiting', 'the last region is still being looked into')
+    if proposal.kind is ProposalKind.BUILD:
+        return judge_region(session.scene.task, turn.built, proposal.region)
+    return None
+
+
+def judge_region(task: Task, built: Mask, region: Mask) -> Refused | None:
+    """Whether there is something to fill in a region that lies on the board."""
+    if not region:
+        return Refused('empty', 'nothing is drawn')
+    if not region & task.silhouette:
+        return Refused('outside', 'the region lies outside the silhouette')
+    if target_of(task, built, region) == built:
+        return Refused('built', 'the region is built already')
+    return None

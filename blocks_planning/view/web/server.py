@@ -1,0 +1,327 @@
+"""The server of the page: a thread of its own with an event loop of its own.
+
+It looks into a mailbox some times a second, and every browser gets what is there then: frames
+are dropped, never queued. What a person proposes is handed on, and the answer is waited for.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import threading
+import time
+from collections.abc import Awaitable, Callable
+from concurrent.futures import Future
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from aiohttp import WSMsgType, web
+
+from blocks_planning.errors import ConfigurationError
+from blocks_planning.view.web.frame import Seen, frame_json, hides_costs
+from blocks_planning.view.web.guards import HEADERS, Address, RateLimit, is_same_origin
+from blocks_planning.view.web.pictures import replay_json, summary_json
+from blocks_planning.view.web.proposing import Refused
+
+FRAME_S = 0.1
+"""Frames are not closer than this [s]."""
+QUIET_S = 1.0
+"""So often a frame is sent when there is nothing new [s]."""
+MOST_CLIENTS = 16
+MOST_BYTES = 16 * 1024
+"""Of what is accepted."""
+MOST_REPLAYS = 5
+"""In one answer."""
+FAREWELL_REPLAYS = 20
+"""That the page gets when the session is over: it can't ask for them any more."""
+_BURST, _PER_S = 20, 5.0
+_ANSWER_S = 5.0
+_HEARTBEAT_S = 10.0
+_START_S = 20.0
+_FAREWELL_S = 0.25
+_STATIC = Path(__file__).with_name('static')
+_FILES = {
+    '/': ('index.html', 'text/html'),
+    **{f'/{path.name}': (path.name, 'text/javascript') for path in _STATIC.glob('*.js')},
+    '/style.css': ('style.css', 'text/css'),
+    '/icon.svg': ('icon.svg', 'image/svg+xml'),
+}
+
+Propose = Callable[[Any], 'Future[Refused | None]']
+Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+class Mailbox:
+    """The latest there is to see. One thread puts, others look; nobody waits."""
+
+    def __init__(self) -> None:
+        """Nothing has been seen."""
+        self.seen = Seen()
+
+    def put(self, seen: Seen) -> None:
+        """Replace what was there; it is never changed."""
+        self.seen = seen
+
+
+class _Client:
+    """A browser that looks: it gets the latest frame, and none that it had no time for."""
+
+    def __init__(self, socket: web.WebSocketResponse) -> None:
+        self._socket = socket
+        self._latest: str | None = None
+        self._has_news = asyncio.Event()
+
+    def offer(self, frame: str) -> None:
+        self._latest = frame
+        self._has_news.set()
+
+    async def send(self) -> None:
+        """Send what is offered, as fast as it is taken at the other end."""
+        while True:
+            await self._has_news.wait()
+            self._has_news.clear()
+            frame, self._latest = self._latest, None
+            if frame is not None:
+                await self._socket.send_str(frame)
+
+    async def say_farewell(self, frame: str) -> None:
+        await self._socket.send_str(frame)
+        await self._socket.close(code=1001)
+
+
+class PageServer:
+    """Serves what is in a mailbox.
+
+    Attributes:
+        address: where; with its port once it has been started.
+    """
+
+    def __init__(self, address: Address, mailbox: Mailbox, propose: Propose) -> None:
+        """Prepare; nothing is served yet.
+
+        Args:
+            address: where to listen.
+            mailbox: what to show.
+            propose: called, in the server's thread, with what a person has sent, decoded JSON. Its
+                future says why it can't be taken, or None; it raises InvalidInput for nonsense.
+        """
+        self.address = address
+        self._mailbox = mailbox
+        self._propose = propose
+        self._clients: set[_Client] = set()
+        self._limit = RateLimit(_BURST, _PER_S)
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._end: asyncio.Event | None = None
+        self._started: Future[int] = Future()
+        self._thread = threading.Thread(target=self._run, name='page', daemon=True)
+
+    @property
+    def clients(self) -> int:
+        """How many browsers look."""
+        return len(self._clients)
+
+    def start(self) -> None:
+        """Begin to listen.
+
+        Raises:
+            ConfigurationError: if the address can't be listened at.
+        """
+        self._thread.start()
+        try:
+            port = self._started.result(_START_S)
+        except OSError as error:
+            place = f'{self.address.host}:{self.address.port}'
+            reason = error.strerror or str(error)
+            raise ConfigurationError(f'the page cannot be served at {place}: {reason}') from None
+        self.address = replace(self.address, port=port)
+
+    def stop(self) -> None:
+        """Tell every browser that the session is over, with what is in the mailbox; then end."""
+        if self._loop is not None and self._end is not None and self._thread.is_alive():
+            self._loop.call_soon_threadsafe(self._end.set)
+            self._thread.join(2 * _FAREWELL_S)
+
+    def _run(self) -> None:
+        try:
+            asyncio.run(self._serve())
+        except BaseException as error:
+            if self._started.done():
+                raise
+            self._started.set_exception(error)
+
+    async def _serve(self) -> None:
+        self._loop, self._end = asyncio.get_running_loop(), asyncio.Event()
+        runner = web.AppRunner(
+            self.application(), access_log=None, shutdown_timeout=_FAREWELL_S, handle_signals=False
+        )
+        await runner.setup()
+        try:
+            await web.TCPSite(runner, self.address.host, self.address.port).start()
+            port = runner.addresses[0][1]
+            self.address = replace(self.address, port=port)
+            self._started.set_result(port)
+            broadcasting = asyncio.create_task(self._broadcast())
+            await self._end.wait()
+            broadcasting.cancel()
+            await self._say_farewell()
+        finally:
+            await runner.cleanup()
+
+    def application(self) -> web.Application:
+        """Everything that can be asked for."""
+        application = web.Application(middlewares=[self._guard], client_max_size=MOST_BYTES)
+        application.on_response_prepare.append(_add_headers)
+        for path, (name, kind) in _FILES.items():
+            application.router.add_get(path, _sender(_STATIC / name, kind))
+        application.router.add_get('/live', self._live)
+        application.router.add_get('/trials', self._trials)
+        application.router.add_get('/replays', self._replays)
+        application.router.add_post('/proposal', self._proposal)
+        return application
+
+    @web.middleware
+    async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        """Let through who may; see :mod:`.guards`."""
+        headers = request.headers
+        if not self.address.is_host(headers.get('Host')):
+            return _refusal(403, 'host', 'this server has another name')
+        if self.address.token and request.path == '/' and 'token' in request.query:
+            return self._admission(request)
+        if not self.address.is_admitted(headers.get('Cookie')):
+            return _refusal(401, 'token', 'open the address that was printed, with its token')
+        from_page = is_same_origin(headers.get('Origin'), headers.get('Host'))
+        if not from_page and (request.method not in ('GET', 'HEAD') or request.path == '/live'):
+            return _refusal(403, 'origin', 'this does not come from the page')
+        try:
+            return await handler(request)
+        except web.HTTPException as error:
+            return _refusal(error.status, 'http', error.reason)
+
+    def _admission(self, request: web.Request) -> web.StreamResponse:
+        """Keep the token in a cookie, so that it stands in no address any more."""
+        if not self.address.is_token(request.query.get('token')):
+            return _refusal(401, 'token', 'that is not the token that was printed')
+        answer = web.Response(status=303, headers={'Location': '/'})
+        answer.set_cookie(
+            self.address.cookie, self.address.token, httponly=True, samesite='Strict', path='/'
+        )
+        return answer
+
+    # What is shown
+
+    async def _live(self, request: web.Request) -> web.StreamResponse:
+        """A socket on which frames go out; nothing comes in."""
+        if len(self._clients) >= MOST_CLIENTS:
+            return _refusal(503, 'clients', f'{MOST_CLIENTS} browsers are looking already')
+        socket = web.WebSocketResponse(
+            heartbeat=_HEARTBEAT_S, compress=False, max_msg_size=1024, timeout=_FAREWELL_S
+        )
+        client = _Client(socket)
+        self._clients.add(client)
+        try:
+            await socket.prepare(request)
+            client.offer(self._frame('frame'))
+            sending = asyncio.create_task(client.send())
+            try:
+                async for message in socket:
+                    if message.type in (WSMsgType.TEXT, WSMsgType.BINARY):
+                        await socket.close(code=1003)
+            finally:
+                sending.cancel()
+        finally:
+            self._clients.discard(client)
+        return socket
+
+    async def _broadcast(self) -> None:
+        """Offer every browser what is new; make each frame once."""
+        shown, shown_s = None, 0.0
+        while True:
+            await asyncio.sleep(FRAME_S)
+            seen, now_s = self._mailbox.seen, time.monotonic()
+            if self._clients and (seen is not shown or now_s - shown_s >= QUIET_S):
+                shown, shown_s = seen, now_s
+                frame = self._frame('frame')
+                for client in self._clients:
+                    client.offer(frame)
+
+    def _frame(self, kind: str, **more: object) -> str:
+        frame = frame_json(self._mailbox.seen, time.monotonic())
+        return json.dumps({**frame, 'kind': kind, **more}, separators=(',', ':'))
+
+    async def _say_farewell(self) -> None:
+        if not self._clients:
+            return
+        session = self._mailbox.seen.session
+        hidden = hides_costs(session)
+        last = session.past[-FAREWELL_REPLAYS:]
+        frame = self._frame(
+            'over',
+            trials=[summary_json(past, hidden) for past in last],
+            replays=[replay_json(past, hidden) for past in last],
+        )
+        farewells = [client.say_farewell(frame) for client in self._clients]
+        done = asyncio.gather(*farewells, return_exceptions=True)
+        await asyncio.wait([done], timeout=_FAREWELL_S)
+
+    async def _trials(self, request: web.Request) -> web.StreamResponse:
+        """The trials that ran, from a number on."""
+        session, first = self._mailbox.seen.session, _number(request, 'from')
+        hidden = hides_costs(session)
+        found = [summary_json(past, hidden) for past in session.past if past.number >= first]
+        return web.json_response(found)
+
+    async def _replays(self, request: web.Request) -> web.StreamResponse:
+        """Some trials that ran, step by step, from a number on."""
+        session, first = self._mailbox.seen.session, _number(request, 'from')
+        hidden = hides_costs(session)
+        found = [past for past in session.past if past.number >= first][:MOST_REPLAYS]
+        return web.json_response([replay_json(past, hidden) for past in found])
+
+    # What is said
+
+    async def _proposal(self, request: web.Request) -> web.StreamResponse:
+        """Hand on what a person has proposed."""
+        if not self._limit.allows(request.remote or '', time.monotonic()):
+            return _refusal(429, 'rate', 'too many proposals at once: wait a second')
+        if request.content_type != 'application/json':
+            return _refusal(415, 'type', 'expected application/json')
+        try:
+            data = json.loads(await request.text())
+        except (ValueError, RecursionError):
+            return _refusal(400, 'json', 'that is not JSON')
+        answer = asyncio.wrap_future(self._propose(data))
+        try:
+            refused = await asyncio.wait_for(answer, _ANSWER_S)
+        except asyncio.TimeoutError:
+            return _refusal(504, 'busy', 'the graph does not answer: try again')
+        except ValueError as error:
+            return _refusal(400, 'malformed', str(error))
+        if refused is not None:
+            return _refusal(409 if refused.code in ('stale', 'waiting') else 422, *refused)
+        return web.json_response({'taken': True})
+
+
+def _sender(path: Path, kind: str) -> Handler:
+    """Answers with a file that ships with the package."""
+    body = path.read_bytes()
+
+    async def send(_: web.Request) -> web.StreamResponse:
+        return web.Response(body=body, content_type=kind, charset='utf-8')
+
+    return send
+
+
+def _refusal(status: int, code: str, reason: str) -> web.Response:
+    return web.json_response({'code': code, 'reason': reason}, status=status)
+
+
+def _number(request: web.Request, key: str) -> int:
+    text = request.query.get(key, '0')
+    if not text.isdecimal() or len(text) > 9:
+        raise web.HTTPBadRequest(reason=f'{key} must be a number')
+    return int(text)
+
+
+async def _add_headers(_: web.Request, response: web.StreamResponse) -> None:
+    response.headers.update(HEADERS)

@@ -1,0 +1,233 @@
+"""What the page knows: the trial that runs, those that ran, and what a person has proposed.
+
+A :class:`Session` is folded from the messages of the graph and never changed, so that the thread
+that serves the page may look at it while the next one is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+from blocks_planning.board.geometry import Mask
+from blocks_planning.search.result import SolveResult
+from blocks_planning.subgoals.decision import Query
+from blocks_planning.subgoals.human import Human
+from blocks_planning.subgoals.proposals import (
+    Proposal,
+    ProposalKind,
+    decisive,
+    proposed_at,
+    target_of,
+)
+from blocks_planning.trials.messages import (
+    Message,
+    ProposalMade,
+    SearchAnswer,
+    TrialEnded,
+    TrialStarted,
+    WorldState,
+)
+from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.trials.status import TrialStatus
+from blocks_planning.view.captions import shortlist
+from blocks_planning.view.scene import Scene, scene_after
+
+MOST_PAST = 500
+"""Trials that ran and can be replayed; the oldest go first."""
+MOST_CANDIDATES = 24
+"""Of a decision in a trial that ran; the best are kept."""
+MOST_LATE = 4
+"""So many trials back news may still come: topics are not ordered among each other."""
+
+
+class Past(NamedTuple):
+    """A trial that ran; ``number`` counts them from 0."""
+
+    number: int
+    scene: Scene
+
+
+class Turn(NamedTuple):
+    """It is the person's turn, in a state.
+
+    Attributes:
+        sequence: of the state.
+        number: of the next proposal in it.
+        built: the filled cells.
+        is_waiting: for an answer to the last proposal.
+    """
+
+    sequence: int
+    number: int
+    built: Mask
+    is_waiting: bool
+
+
+@dataclass(frozen=True)
+class Session:
+    """What has been seen so far.
+
+    Attributes:
+        scene: the trial that runs, or was the last to run; None before the first.
+        state: the latest of that trial.
+        past: the last trials that ran, the oldest first.
+        answers: to the queries of a person's proposals.
+        proposals: of a person in that trial, in the order of their numbers in every state.
+        told_again: how many proposals of the current state were known before this session.
+    """
+
+    scene: Scene | None = None
+    state: WorldState | None = None
+    past: tuple[Past, ...] = ()
+    answers: Mapping[Query, SolveResult] = field(default_factory=dict)
+    proposals: tuple[Proposal, ...] = ()
+    told_again: int = 0
+
+    @property
+    def trial_id(self) -> str | None:
+        """Of the trial that runs, or was the last to run."""
+        return None if self.scene is None else self.scene.trial.trial_id
+
+    @property
+    def count(self) -> int:
+        """How many trials ran, also those that are not kept any more."""
+        return self.past[-1].number + 1 if self.past else 0
+
+
+Memory = Session
+
+
+def step(memory: Session, message: Message) -> tuple[Session, tuple[Message, ...]]:
+    """Look; there is nothing to say."""
+    return session_after(memory, message), ()
+
+
+def session_after(session: Session, message: Message) -> Session:
+    """The session after a message; what is stale, doubled or of an unknown trial changes nothing."""
+    scene = session.scene
+    if scene is None or message.trial_id != scene.trial.trial_id:
+        if isinstance(message, TrialStarted):
+            return Session(Scene(message), past=_closed(session).past)
+        return replace(session, past=_past_after(session.past, message))
+    match message:
+        case SearchAnswer():
+            return _answered(session, scene.spec, message)
+        case ProposalMade(_, proposal):
+            return _proposed(session, scene.spec, proposal)
+    after = scene_after(scene, message)
+    if isinstance(message, WorldState) and _is_later(message, session.state):
+        session = replace(session, state=message, told_again=0)
+    if after is not scene:
+        session = replace(session, scene=after, past=_past_after(session.past, message))
+    return _closed(session) if isinstance(message, TrialEnded) else session
+
+
+def _is_later(state: WorldState, than: WorldState | None) -> bool:
+    return than is None or state.sequence > than.sequence
+
+
+def _closed(session: Session) -> Session:
+    """The current trial among those that ran, if it is not there yet."""
+    scene = session.scene
+    if scene is None or any(p.scene.trial == scene.trial for p in session.past[-MOST_LATE:]):
+        return session
+    past = (*session.past, Past(session.count, _trimmed(scene)))
+    return replace(session, past=past[-MOST_PAST:])
+
+
+def _past_after(past: tuple[Past, ...], message: Message) -> tuple[Past, ...]:
+    """Late news of a trial that ran."""
+    for index in range(len(past) - 1, max(len(past) - 1 - MOST_LATE, -1), -1):
+        number, scene = past[index]
+        if scene.trial.trial_id == message.trial_id:
+            after = scene_after(scene, message)
+            if after is not scene:
+                late = Past(number, _trimmed(after))
+                return (*past[:index], late, *past[index + 1 :])
+    return past
+
+
+def _trimmed(scene: Scene) -> Scene:
+    """The same, with no more candidates than are kept."""
+    chosen = scene.chosen
+    if chosen is None or all(
+        len(entry.decision.candidates) <= MOST_CANDIDATES for entry in chosen.decisions
+    ):
+        return scene
+    entries = []
+    for entry in chosen.decisions:
+        decision = entry.decision
+        kept = shortlist(decision, MOST_CANDIDATES)
+        trimmed = replace(
+            decision,
+            candidates=tuple(decision.candidates[index] for index in kept),
+            chosen=None if decision.chosen is None else kept.index(decision.chosen),
+        )
+        entries.append(replace(entry, decision=trimmed))
+    return replace(scene, chosen=replace(chosen, decisions=tuple(entries)))
+
+
+def _answered(session: Session, spec: TrialSpec, message: SearchAnswer) -> Session:
+    if not isinstance(spec.strategy, Human):
+        return session
+    return replace(session, answers={**session.answers, message.query: message.result})
+
+
+def _proposed(session: Session, spec: TrialSpec, proposal: Proposal) -> Session:
+    """Taken as the selector takes it: in the order of the numbers."""
+    earlier = proposed_at(session.proposals, proposal.sequence)
+    if not isinstance(spec.strategy, Human) or proposal.number != len(earlier):
+        return session
+    return replace(session, proposals=(*session.proposals, proposal))
+
+
+def with_told_again(session: Session) -> Session:
+    """The same, when all proposals of the current state were known before this session.
+
+    Nobody may be asked about them again, so no answer is waited for.
+    """
+    sequence = 0 if session.state is None else session.state.sequence
+    return replace(session, told_again=len(proposed_at(session.proposals, sequence)))
+
+
+def turn_of(session: Session) -> Turn | None:
+    """Whose turn it is: None if it is not the person's."""
+    scene, state = session.scene, session.state
+    if (
+        scene is None
+        or state is None
+        or not isinstance(scene.spec.strategy, Human)
+        or scene.status is not TrialStatus.BUILDING
+        or state.status is not TrialStatus.BUILDING
+        or _is_executing(scene, state)
+    ):
+        return None
+    made = proposed_at(session.proposals, state.sequence)
+    asking = decisive(scene.task, state.built, made[session.told_again :])
+    is_waiting = any(
+        proposal.kind is ProposalKind.GIVE_UP or answer_to(session, proposal, state.built) is None
+        for proposal in asking
+    )
+    return Turn(state.sequence, len(made), state.built, is_waiting)
+
+
+def answer_to(session: Session, proposal: Proposal, built: Mask) -> SolveResult | None:
+    """What was found out about a proposal that was made in a state; None: nothing yet."""
+    if session.scene is None:
+        return None
+    task = session.scene.task
+    return session.answers.get(Query(built, target_of(task, built, proposal.region)))
+
+
+def _is_executing(scene: Scene, state: WorldState) -> bool:
+    """Whether the last subgoal leads on from a state, or there is none because it is given up."""
+    chosen = scene.chosen
+    if chosen is None:
+        return False
+    if chosen.subgoal is None:
+        return True
+    done = state.sequence - chosen.sequence
+    way = chosen.way(scene.task.board)
+    return done < 0 or (done < chosen.subgoal.execute and state.built == way[done])
