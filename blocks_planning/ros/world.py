@@ -97,7 +97,11 @@ class World(PartNode):
 
     def _failure(self, action: PlaceBlock, reason: str) -> tuple[Message, ...]:
         """No block can be placed any more."""
-        self.get_logger().error(reason, throttle_duration_sec=WARN_PERIOD_S)
+        self.get_logger().error(
+            reason,
+            throttle_duration_sec=WARN_PERIOD_S,
+            throttle_time_source_type=self.steady,
+        )
         return (PlacementOutcome(action.trial_id, action.sequence, None, reason, failed=True),)
 
     @property

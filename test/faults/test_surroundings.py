@@ -72,7 +72,9 @@ def test_graph_leaves_files_in_its_folder_only(tmp_path: Path) -> None:
     assert len(record_lines(out)) == 2
     assert {path.name for path in tmp_path.iterdir()} == {'towers.txt', 'script.yaml', 'deep'}
     assert [path.name for path in (tmp_path / 'deep').iterdir()] == ['out']
-    assert {path.name for path in out.iterdir()} <= {'trials.jsonl', 'journal', 'log'}
+    assert {path.name for path in out.iterdir()} <= {
+        *('trials.jsonl', 'journal', 'log', 'pictures')
+    }
 
 
 def _complaints(source: Source) -> Iterator[str]:

@@ -300,8 +300,8 @@ def test_the_end_of_the_session_is_said_with_what_ran(served: Served, scoped: He
             while not frames or frames[-1]['kind'] != 'over':
                 frames.append(await next_frame(live))
             assert [one['blocks'] for one in frames[-1]['replays']] == [scoped.record.blocks]
-            assert (await live.receive()).type is WSMsgType.CLOSE
-            assert live.close_code == 1001
+            closing = await live.receive()
+            assert (closing.type, closing.data) == (WSMsgType.CLOSE, 1001)
 
     ask(talk)
 
