@@ -17,6 +17,7 @@ ARGUMENTS = {
     'bag_dir': ('', 'folder of a bag to record everything in; empty: no bag'),
     'namespace': ('', 'namespace of all nodes'),
     'markers': ('false', 'true: show the towers to RViz and Foxglove'),
+    'view': ('false', 'true: serve the page; trial_view says at which address'),
 }
 RESPAWNED = ('world', 'subgoal_selector', 'action_searcher')
 
@@ -71,6 +72,12 @@ def generate_launch_description() -> LaunchDescription:
                 'marker_publisher',
                 respawn=True,
                 condition=IfCondition(LaunchConfiguration('markers')),
+            ),
+            node(
+                'trial_view',
+                respawn=True,
+                parameters=[{'script': text('script'), 'participant': text('participant')}],
+                condition=IfCondition(LaunchConfiguration('view')),
             ),
             orchestrator,
             RegisterEventHandler(
