@@ -57,6 +57,7 @@ class Domain:
             'ROS_DOMAIN_ID': str(self.number),
             'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SYSTEM_DEFAULT',
             'FASTRTPS_DEFAULT_PROFILES_FILE': str(loopback_profile()),
+            'RMW_FASTRTPS_USE_QOS_FROM_XML': '1',  # how memory is taken is told in that profile
             'RMW_IMPLEMENTATION': 'rmw_fastrtps_cpp',
         }
 

@@ -41,7 +41,7 @@ GOES_ON = 3
 """Trials that must be done after it is over."""
 DEADLINE_S = 120.0
 SAMPLES = 4
-MORE_MB = 1000.0
+MORE_MB = 100.0
 NODES = ('world', 'subgoal_selector', 'action_searcher', 'trial_orchestrator', 'bag_recorder')
 
 
