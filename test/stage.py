@@ -25,9 +25,10 @@ from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.view.web.frame import Seen
 from blocks_planning.view.web.guards import Address
 from blocks_planning.view.web.health import NOTHING, Health
+from blocks_planning.view.web.live import Mailbox
 from blocks_planning.view.web.proposing import Refused, judge, parse
 from blocks_planning.view.web.queue import Queue
-from blocks_planning.view.web.server import Mailbox, PageServer
+from blocks_planning.view.web.server import PageServer
 from blocks_planning.view.web.session import Session, session_after, with_told_again
 
 _PARTS = (world, selector, searcher, scribe)
@@ -86,7 +87,7 @@ class Stage:
 
     def crash(self) -> None:
         """End the server without a word."""
-        self.server._clients.clear()
+        self.server._audience._clients.clear()
         self.server.stop()
 
     def _say(self, *messages: Message) -> None:

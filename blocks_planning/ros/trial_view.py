@@ -43,9 +43,10 @@ from blocks_planning.view.web import session
 from blocks_planning.view.web.frame import Seen
 from blocks_planning.view.web.guards import address_of
 from blocks_planning.view.web.health import NOTHING, health_after
+from blocks_planning.view.web.live import Mailbox
 from blocks_planning.view.web.proposing import Posted, Refused, judge, parse
 from blocks_planning.view.web.queue import Queue
-from blocks_planning.view.web.server import Mailbox, PageServer
+from blocks_planning.view.web.server import PageServer
 
 HOST = Parameter('host', '127.0.0.1', 'Name or number to listen at; a token off this machine.')
 PORT = Parameter('port', 0, 'Port to listen at; 0: any that is free.', (0, 65535))

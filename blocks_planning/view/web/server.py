@@ -1,7 +1,7 @@
 """The server of the page: a thread of its own with an event loop of its own.
 
-It looks into a mailbox some times a second, and every browser gets what is there then: frames
-are dropped, never queued. What a person proposes is handed on, and the answer is waited for.
+What there is to see lies in a mailbox; see :mod:`.live`. What a person proposes is handed on, and
+the answer is waited for.
 """
 
 from __future__ import annotations
@@ -16,30 +16,24 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from aiohttp import WSMsgType, web
+from aiohttp import web
 
 from blocks_planning.errors import ConfigurationError
-from blocks_planning.view.web.frame import Seen, frame_json, hides_costs
+from blocks_planning.view.web.frame import hides_costs
 from blocks_planning.view.web.guards import HEADERS, Address, RateLimit, is_same_origin
+from blocks_planning.view.web.live import FAREWELL_S, Audience, Mailbox
 from blocks_planning.view.web.pictures import replay_json, summary_json
 from blocks_planning.view.web.proposing import Refused
 
-FRAME_S = 0.1
-"""Frames are not closer than this [s]."""
-QUIET_S = 1.0
-"""So often a frame is sent when there is nothing new [s]."""
 MOST_CLIENTS = 16
 MOST_BYTES = 16 * 1024
 """Of what is accepted."""
 MOST_REPLAYS = 5
 """In one answer."""
-FAREWELL_REPLAYS = 20
-"""That the page gets when the session is over: it can't ask for them any more."""
 _BURST, _PER_S = 20, 5.0
 _ANSWER_S = 5.0
 _HEARTBEAT_S = 10.0
 _START_S = 20.0
-_FAREWELL_S = 0.25
 _STATIC = Path(__file__).with_name('static')
 _FILES = {
     '/': ('index.html', 'text/html'),
@@ -50,44 +44,6 @@ _FILES = {
 
 Propose = Callable[[Any], 'Future[Refused | None]']
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
-
-
-class Mailbox:
-    """The latest there is to see. One thread puts, others look; nobody waits."""
-
-    def __init__(self) -> None:
-        """Nothing has been seen."""
-        self.seen = Seen()
-
-    def put(self, seen: Seen) -> None:
-        """Replace what was there; it is never changed."""
-        self.seen = seen
-
-
-class _Client:
-    """A browser that looks: it gets the latest frame, and none that it had no time for."""
-
-    def __init__(self, socket: web.WebSocketResponse) -> None:
-        self._socket = socket
-        self._latest: str | None = None
-        self._has_news = asyncio.Event()
-
-    def offer(self, frame: str) -> None:
-        self._latest = frame
-        self._has_news.set()
-
-    async def send(self) -> None:
-        """Send what is offered, as fast as it is taken at the other end."""
-        while True:
-            await self._has_news.wait()
-            self._has_news.clear()
-            frame, self._latest = self._latest, None
-            if frame is not None:
-                await self._socket.send_str(frame)
-
-    async def say_farewell(self, frame: str) -> None:
-        await self._socket.send_str(frame)
-        await self._socket.close(code=1001)
 
 
 class PageServer:
@@ -109,7 +65,7 @@ class PageServer:
         self.address = address
         self._mailbox = mailbox
         self._propose = propose
-        self._clients: set[_Client] = set()
+        self._audience = Audience(mailbox)
         self._limit = RateLimit(_BURST, _PER_S)
         self._loop: asyncio.AbstractEventLoop | None = None
         self._end: asyncio.Event | None = None
@@ -119,7 +75,7 @@ class PageServer:
     @property
     def clients(self) -> int:
         """How many browsers look."""
-        return len(self._clients)
+        return len(self._audience)
 
     def start(self) -> None:
         """Begin to listen.
@@ -140,7 +96,7 @@ class PageServer:
         """Tell every browser that the session is over, with what is in the mailbox; then end."""
         if self._loop is not None and self._end is not None and self._thread.is_alive():
             self._loop.call_soon_threadsafe(self._end.set)
-            self._thread.join(2 * _FAREWELL_S)
+            self._thread.join(2 * FAREWELL_S)
 
     def _run(self) -> None:
         try:
@@ -153,7 +109,7 @@ class PageServer:
     async def _serve(self) -> None:
         self._loop, self._end = asyncio.get_running_loop(), asyncio.Event()
         runner = web.AppRunner(
-            self.application(), access_log=None, shutdown_timeout=_FAREWELL_S, handle_signals=False
+            self.application(), access_log=None, shutdown_timeout=FAREWELL_S, handle_signals=False
         )
         await runner.setup()
         try:
@@ -161,10 +117,10 @@ class PageServer:
             port = runner.addresses[0][1]
             self.address = replace(self.address, port=port)
             self._started.set_result(port)
-            broadcasting = asyncio.create_task(self._broadcast())
+            broadcasting = asyncio.create_task(self._audience.broadcast())
             await self._end.wait()
             broadcasting.cancel()
-            await self._say_farewell()
+            await self._audience.say_farewell()
         finally:
             await runner.cleanup()
 
@@ -212,57 +168,13 @@ class PageServer:
 
     async def _live(self, request: web.Request) -> web.StreamResponse:
         """A socket on which frames go out; nothing comes in."""
-        if len(self._clients) >= MOST_CLIENTS:
+        if len(self._audience) >= MOST_CLIENTS:
             return _refusal(503, 'clients', f'{MOST_CLIENTS} browsers are looking already')
         socket = web.WebSocketResponse(
-            heartbeat=_HEARTBEAT_S, compress=False, max_msg_size=1024, timeout=_FAREWELL_S
+            heartbeat=_HEARTBEAT_S, compress=False, max_msg_size=1024, timeout=FAREWELL_S
         )
-        client = _Client(socket)
-        self._clients.add(client)
-        try:
-            await socket.prepare(request)
-            client.offer(self._frame('frame'))
-            sending = asyncio.create_task(client.send())
-            try:
-                async for message in socket:
-                    if message.type in (WSMsgType.TEXT, WSMsgType.BINARY):
-                        await socket.close(code=1003)
-            finally:
-                sending.cancel()
-        finally:
-            self._clients.discard(client)
+        await self._audience.join(socket, request)
         return socket
-
-    async def _broadcast(self) -> None:
-        """Offer every browser what is new; make each frame once."""
-        shown, shown_s = None, 0.0
-        while True:
-            await asyncio.sleep(FRAME_S)
-            seen, now_s = self._mailbox.seen, time.monotonic()
-            if self._clients and (seen is not shown or now_s - shown_s >= QUIET_S):
-                shown, shown_s = seen, now_s
-                frame = self._frame('frame')
-                for client in self._clients:
-                    client.offer(frame)
-
-    def _frame(self, kind: str, **more: object) -> str:
-        frame = frame_json(self._mailbox.seen, time.monotonic())
-        return json.dumps({**frame, 'kind': kind, **more}, separators=(',', ':'))
-
-    async def _say_farewell(self) -> None:
-        if not self._clients:
-            return
-        session = self._mailbox.seen.session
-        hidden = hides_costs(session)
-        last = session.past[-FAREWELL_REPLAYS:]
-        frame = self._frame(
-            'over',
-            trials=[summary_json(past, hidden) for past in last],
-            replays=[replay_json(past, hidden) for past in last],
-        )
-        farewells = [client.say_farewell(frame) for client in self._clients]
-        done = asyncio.gather(*farewells, return_exceptions=True)
-        await asyncio.wait([done], timeout=_FAREWELL_S)
 
     async def _trials(self, request: web.Request) -> web.StreamResponse:
         """The trials that ran, from a number on."""

@@ -18,11 +18,13 @@ import pytest
 from aiohttp import ClientSession, WSMsgType, WSServerHandshakeError
 
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.view.web import live
 from blocks_planning.view.web import server as module
 from blocks_planning.view.web.frame import Seen, frame_json
 from blocks_planning.view.web.guards import HEADERS, Address, address_of
+from blocks_planning.view.web.live import Mailbox
 from blocks_planning.view.web.proposing import MalformedProposal, Refused
-from blocks_planning.view.web.server import Mailbox, PageServer
+from blocks_planning.view.web.server import PageServer
 from blocks_planning.view.web.session import Session, session_after
 
 from .conftest import Heard
@@ -187,7 +189,7 @@ def test_frames_are_what_was_seen(served: Served, scoped: Heard) -> None:
 def test_a_frame_comes_also_when_nothing_is_new(
     served: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module, 'QUIET_S', 0.1)
+    monkeypatch.setattr(live, 'QUIET_S', 0.1)
 
     async def talk(client: ClientSession) -> None:
         async with client.ws_connect(f'{served.base}/live', headers=served.from_page) as live:
@@ -201,7 +203,7 @@ def test_frames_are_dropped_and_never_queued(
     served: Served, scoped: Heard, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Somebody who does not read for a while gets the latest then, not all that were missed."""
-    monkeypatch.setattr(module, 'FRAME_S', 0.0005)
+    monkeypatch.setattr(live, 'FRAME_S', 0.0005)
     made = threading.Event()
     count = 0
 
@@ -216,7 +218,7 @@ def test_frames_are_dropped_and_never_queued(
             'padding': 'x' * 100_000,
         }
 
-    monkeypatch.setattr(module, 'frame_json', padded)
+    monkeypatch.setattr(live, 'frame_json', padded)
 
     async def talk(client: ClientSession) -> None:
         async with client.ws_connect(
