@@ -25,8 +25,10 @@ from pathlib import Path
 from blocks_planning.board.geometry import EMPTY, FILLED, MAX_SIDE, Board, Mask
 from blocks_planning.errors import StimulusError
 from blocks_planning.resources import resource_directories
+from blocks_planning.settings import shown
 
 MAX_FILE_BYTES = 1 << 20
+_MOST_SHOWN = 200
 SUFFIX = '.txt'
 
 _HEADING = re.compile(r'tower[ \t]+([A-Za-z0-9_.-]+)')
@@ -229,14 +231,15 @@ def find_stimuli(address: str) -> list[Stimulus]:
     path = _file_of(head, sets) if head else None
     if path is None or not (head in sets or path.is_file()):
         raise StimulusError(
-            f'stimulus {address!r}: no such file, and no such set '
+            f'stimulus {shown(address, _MOST_SHOWN)}: no such file, and no such set '
             f'(there are: {", ".join(sorted(sets)) or "none"}); '
             'expected SET, SET/NAME or a path'
         )
     silhouettes = read_file(path)
     if item not in silhouettes:
         raise StimulusError(
-            f'stimulus {address!r}: {path} has no tower {item!r}; it has {_listing(silhouettes)}'
+            f'stimulus {shown(address, _MOST_SHOWN)}: {path} has no tower {shown(item)}; '
+            f'it has {_listing(silhouettes)}'
         )
     return [Stimulus(address, *silhouettes[item])]
 

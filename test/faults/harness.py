@@ -158,19 +158,26 @@ class Harness:
         self.report.recoveries.append((time.monotonic() - begun, fault))
 
     def _start_copy(self, fault: Fault, pid: int) -> None:
-        """A copy must be refused, in a sentence, whatever the first one does meanwhile."""
+        """A copy must be refused, in a sentence, whatever the first one does meanwhile.
+
+        Unless that has ended, with its script or to be started again: then there was no copy.
+        """
         copy = self._subject.copy(pid)
-        try:
-            self.report.add(fault)
-            self._spin(lambda: copy.poll() is not None, RECOVERY_BOUND_S)
-            said = copy.stdout.read() if copy.stdout else ''
-            if copy.returncode != 2 or said.count('Error: ') != 1 or 'Traceback' in said:
-                self._complain(f'a copy of {fault.node} ended with {copy.returncode}: {said}')
-        finally:
-            copy.kill()
-            copy.wait()
-            if copy.stdout:
-                copy.stdout.close()
+        if copy is not None:
+            try:
+                self._spin(lambda: copy.poll() is not None, RECOVERY_BOUND_S)
+                said = copy.stdout.read() if copy.stdout else ''
+            finally:
+                copy.kill()
+                copy.wait()
+                if copy.stdout:
+                    copy.stdout.close()
+        if copy is None or self._subject.pids().get(fault.node) != pid:
+            self._do(fault)
+            return
+        self.report.add(fault)
+        if copy.returncode != 2 or said.count('Error: ') != 1 or 'Traceback' in said:
+            self._complain(f'a copy of {fault.node} ended with {copy.returncode}: {said}')
 
     def _kill_bringup(self, fault: Fault) -> None:
         self._spin(lambda: False, fault.delay_s)

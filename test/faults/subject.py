@@ -98,11 +98,18 @@ class Subject:
                 self._process.kill()
                 self._process.wait()
 
-    def copy(self, pid: int) -> subprocess.Popen[str]:
-        """Start a second copy of a node: the same words, in the same environment."""
-        words = _words(pid, 'cmdline')
-        pairs = (word.partition('=') for word in _words(pid, 'environ'))
-        environment = {key: value for key, _, value in pairs}
+    def copy(self, pid: int) -> subprocess.Popen[str] | None:
+        """Start a second copy of a node: the same words, in the same environment.
+
+        None if the node is gone.
+        """
+        try:
+            words, variables = _words(pid, 'cmdline'), _words(pid, 'environ')
+        except OSError:
+            return None
+        if not words[0]:  # it has ended, and nobody has taken note
+            return None
+        environment = {key: value for key, _, value in (word.partition('=') for word in variables)}
         environment['BLOCKS_PLANNING_PARENT'] = str(os.getpid())
         return subprocess.Popen(
             words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True

@@ -339,10 +339,24 @@ def test_recording_goes_on_in_a_bag_that_was_cut_off(
     assert len(contents(bag)) == kept + 2 * 9
 
 
-def test_metadata_alone_is_made_again(tmp_path: Path, bag: Path) -> None:
+@pytest.mark.parametrize(
+    'spoil',
+    [
+        lambda text: text[:100],
+        lambda _: '[' * 5000,
+        lambda text: text.replace('relative_file_paths:', 'relative_file_paths: 5\n  others:'),
+        lambda text: text.replace(
+            'relative_file_paths:', f'relative_file_paths: [{"9" * 5000}]\n  x:'
+        ),
+    ],
+    ids=['cut', 'deep', 'no list', 'digits'],
+)
+def test_metadata_alone_is_made_again(
+    tmp_path: Path, bag: Path, spoil: Callable[[str], str]
+) -> None:
     again = Path(shutil.copytree(bag, tmp_path / 'bag'))
     text = (again / 'metadata.yaml').read_text()
-    (again / 'metadata.yaml').write_text(text[:100])
+    (again / 'metadata.yaml').write_text(spoil(text))
     assert not is_finished(again)
     assert repair(again) == []
     assert (again / 'metadata.yaml').read_text() == text

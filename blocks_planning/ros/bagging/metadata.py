@@ -126,9 +126,9 @@ def listed_files(directory: Path) -> Iterable[str] | None:
     try:
         content = yaml.safe_load((directory / METADATA).read_text(encoding='utf-8'))
         names = content['rosbag2_bagfile_information']['relative_file_paths']
-    except (OSError, ValueError, KeyError, TypeError, yaml.YAMLError):
+        return [Path(str(name)).name for name in names or ()]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError, yaml.YAMLError):
         return None
-    return [Path(str(name)).name for name in names or ()]
 
 
 def sync_directory(directory: Path) -> None:
