@@ -344,12 +344,13 @@ def test_recording_goes_on_in_a_bag_that_was_cut_off(
     [
         lambda text: text[:100],
         lambda _: '[' * 5000,
+        lambda _: '!!int ""',
         lambda text: text.replace('relative_file_paths:', 'relative_file_paths: 5\n  others:'),
         lambda text: text.replace(
             'relative_file_paths:', f'relative_file_paths: [{"9" * 5000}]\n  x:'
         ),
     ],
-    ids=['cut', 'deep', 'no list', 'digits'],
+    ids=['cut', 'deep', 'no number', 'no list', 'digits'],
 )
 def test_metadata_alone_is_made_again(
     tmp_path: Path, bag: Path, spoil: Callable[[str], str]
