@@ -35,6 +35,7 @@ from rosbags.highlevel import AnyReader
 from blocks_planning.cli import main
 from blocks_planning.ros.bagging import BagError
 from blocks_planning.ros.bagging.definitions import definition_of, type_hash_of
+from blocks_planning.ros.bagging.metadata import FileSummary, RecordedTopic, information
 from blocks_planning.ros.bagging.repair import _records, is_finished, repair
 from blocks_planning.ros.bags import RecordedTrial, trials_of
 from blocks_planning.ros.topics import OUTCOME, STATE, SUBGOAL, TOPICS, TRIAL
@@ -361,6 +362,18 @@ def test_metadata_alone_is_made_again(
     assert not is_finished(again)
     assert repair(again) == []
     assert (again / 'metadata.yaml').read_text() == text
+
+
+@pytest.mark.parametrize(
+    ('text', 'said'),
+    [('- depth: 1', [{'depth': 1}]), ('', None), ('!!int ""', None), ('[' * 5000, None)],
+    ids=['plain', 'empty', 'no number', 'deep'],
+)
+def test_quality_of_service_that_cannot_be_read_is_left_out(text: str, said: Any) -> None:
+    """It stands in the file of a bag, which may be spoilt."""
+    topic = RecordedTopic('t', 'std_msgs/msg/String', 'string data', '', text)
+    (told,) = information([FileSummary('a.mcap', [topic], {})])['topics_with_message_count']
+    assert told['topic_metadata']['offered_qos_profiles'] == (said or [])
 
 
 def test_any_length_is_repaired_or_refused(tmp_path: Path) -> None:

@@ -68,7 +68,7 @@ def information(files: Sequence[FileSummary]) -> dict[str, Any]:
                     'name': topic.name,
                     'type': topic.ros_type,
                     'serialization_format': 'cdr',
-                    'offered_qos_profiles': yaml.safe_load(topic.offered_qos) or [],
+                    'offered_qos_profiles': from_yaml(topic.offered_qos) or [],
                     'type_description_hash': topic.type_hash,
                 },
                 'message_count': sum(file.counts.get(topic.name, 0) for file in files),
@@ -100,6 +100,14 @@ def _times(files: Sequence[FileSummary]) -> dict[str, dict[str, int]]:
     }
 
 
+def from_yaml(text: str) -> Any:
+    """What a YAML text says; None if it says nothing that can be read."""
+    try:
+        return yaml.safe_load(text)
+    except Exception:  # noqa: BLE001  PyYAML lets through whatever a value makes it stumble over
+        return None
+
+
 def to_yaml(content: object) -> str:
     """YAML in blocks, in the order given."""
     text: str = yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
@@ -124,10 +132,10 @@ def write_metadata(directory: Path, files: Sequence[FileSummary]) -> None:
 def listed_files(directory: Path) -> Iterable[str] | None:
     """The files that ``metadata.yaml`` lists; None if there is none that can be read."""
     try:
-        content = yaml.safe_load((directory / METADATA).read_text(encoding='utf-8'))
+        content = from_yaml((directory / METADATA).read_text(encoding='utf-8'))
         names = content['rosbag2_bagfile_information']['relative_file_paths']
         return [Path(str(name)).name for name in names or ()]
-    except Exception:  # noqa: BLE001  PyYAML lets through whatever a value makes it stumble over
+    except (OSError, ValueError, KeyError, TypeError):
         return None
 
 
