@@ -149,12 +149,13 @@ def _is_served(place: tuple[str, int]) -> bool:
 
 def _summarise(path: Path, wanted: set[str]) -> list[TrialRecord]:
     """Print what came of the wanted trials; return their records."""
-    from blocks_planning.view.tables import print_summaries
+    from blocks_planning.view.tables import print_proposals, print_summaries
 
     records = read_records(path) if path.stat().st_size else []
     records = [record for record in records if record.spec.trial_id in wanted]
     if records:
         print_summaries(records)
+        print_proposals(records)
         click.echo(f'Records: {path}')
     return records
 

@@ -12,6 +12,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from blocks_planning.subgoals.human import Human
+from blocks_planning.subgoals.proposals import ProposalKind
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.status import TrialStatus
 
@@ -58,6 +60,44 @@ def print_summary(records: Sequence[TrialRecord], console: Console | None = None
         table.add_row(Text(stimulus), *rest)
     console.print(_planner(records[0]), highlight=False)
     console.print(table)
+
+
+def print_proposals(records: Sequence[TrialRecord], console: Console | None = None) -> None:
+    """Print what a person did in each trial in which one scoped; nothing if there is none.
+
+    Thinking is what passed before each proposal, also before those that were withdrawn [s].
+    """
+    table = Table(
+        title='What was proposed',
+        title_justify='left',
+        title_style='',
+        box=box.SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+    )
+    table.add_column('participant', overflow='fold')
+    table.add_column('stimulus', overflow='fold')
+    for title in ('proposed', 'built', 'withdrawn', 'thinking [s]', 'each [s]'):
+        table.add_column(title, justify='right', no_wrap=True)
+    for record in records:
+        strategy = record.spec.strategy
+        if isinstance(strategy, Human):
+            row = [strategy.participant, record.spec.stimulus, *_proposed(record)]
+            table.add_row(*map(Text, row))
+    if table.row_count:
+        (console or Console()).print(table)
+
+
+def _proposed(record: TrialRecord) -> list[str]:
+    """How many regions were to be built, were built, were let go; and how long that took."""
+    kinds = [proposal.kind for proposal in record.proposals]
+    seconds = [proposal.thinking_s for proposal in record.proposals]
+    return [
+        str(kinds.count(ProposalKind.BUILD)),
+        str(record.subgoals),
+        str(kinds.count(ProposalKind.WITHDRAWN)),
+        f'{sum(seconds):.1f}',
+        f'{fmean(seconds):.1f}' if seconds else '-',
+    ]
 
 
 def _planner(record: TrialRecord) -> str:
