@@ -68,7 +68,7 @@ def print_proposals(records: Sequence[TrialRecord], console: Console | None = No
     Thinking is what passed before each proposal, also before those that were withdrawn [s].
     """
     table = Table(
-        title='What was proposed',
+        title='What was proposed; thinking in seconds, in all and each time',
         title_justify='left',
         title_style='',
         box=box.SIMPLE_HEAD,
@@ -76,7 +76,7 @@ def print_proposals(records: Sequence[TrialRecord], console: Console | None = No
     )
     table.add_column('participant', overflow='fold')
     table.add_column('stimulus', overflow='fold')
-    for title in ('proposed', 'built', 'withdrawn', 'thinking [s]', 'each [s]'):
+    for title in ('proposed', 'built', 'withdrawn', 'thinking', 'each'):
         table.add_column(title, justify='right', no_wrap=True)
     for record in records:
         strategy = record.spec.strategy

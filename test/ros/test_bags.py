@@ -525,6 +525,16 @@ def test_trial_that_the_bag_does_not_see_the_end_of(
     assert cli('draw', bag, '--out', tmp_path / 'x.gif')[0] == 0
 
 
+def test_tower_that_stood_before_its_decisions_is_no_contradiction(tmp_path: Path) -> None:
+    """A world that was started again has its journal; the recorder went before the rest came."""
+    _, said = trial_said(spec(CHAIR))
+    states = [one for one in said if one.topic is STATE]
+    bag = write_bag(tmp_path / 'bag', [said[0], states[-1]])
+    trial = only_trial(bag)
+    assert trial.outcome is None
+    assert list(trial.contradictions()) == []
+
+
 def test_states_that_were_missed_do_not_matter(tmp_path: Path) -> None:
     """A recorder that was away, and came back, hears the latest of everything."""
     record, said = trial_said(spec(CHAIR))
