@@ -60,6 +60,8 @@ class Proposer(Peer):
         super()._hear(topic, message)
         heard = self.heard[-1]
         if isinstance(heard, TrialStarted):
+            if heard.trial_id == self._trial_id:
+                return  # announced again
             self._trial_id = heard.trial_id
             self.person = Person(heard.spec, seed=heard.spec.seed)
             self._words = iter(self.person)

@@ -56,7 +56,7 @@ class Turn(NamedTuple):
         sequence: of the state.
         number: of the next proposal in it.
         built: the filled cells.
-        is_waiting: for an answer to the last proposal.
+        is_waiting: for an answer to the last proposal, or for what follows from it.
     """
 
     sequence: int
@@ -206,11 +206,14 @@ def turn_of(session: Session) -> Turn | None:
         return None
     made = proposed_at(session.proposals, state.sequence)
     asking = decisive(scene.task, state.built, made[session.told_again :])
-    is_waiting = any(
-        proposal.kind is ProposalKind.GIVE_UP or answer_to(session, proposal, state.built) is None
-        for proposal in asking
-    )
+    is_waiting = any(_decides(session, proposal, state.built) for proposal in asking)
     return Turn(state.sequence, len(made), state.built, is_waiting)
+
+
+def _decides(session: Session, proposal: Proposal, built: Mask) -> bool:
+    """Whether a proposal may end the person's turn: unless it is known that it can't be built."""
+    answer = answer_to(session, proposal, built)
+    return proposal.kind is ProposalKind.GIVE_UP or answer is None or answer.solved
 
 
 def answer_to(session: Session, proposal: Proposal, built: Mask) -> SolveResult | None:
