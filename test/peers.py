@@ -22,6 +22,7 @@ os.environ.setdefault('ROS_LOG_DIR', tempfile.mkdtemp(prefix='ros-log-'))
 
 import rclpy  # noqa: E402
 from rclpy.context import Context  # noqa: E402
+from rclpy.duration import Duration  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from rclpy.signals import SignalHandlerOptions  # noqa: E402
@@ -194,8 +195,11 @@ class Bench:
     def tell(self, *messages: Message) -> None:
         """Say something, and see that the node has heard it, one after the other."""
         for message in messages:
+            topic = _TOPIC_OF[type(message)]
             self.peer.say(message)
-            self.fence(_TOPIC_OF[type(message)])
+            # What is latched makes room for what comes next, also if it was lost on its way.
+            self.peer.outlets[topic].wait_for_all_acked(Duration(seconds=DEADLINE_S))
+            self.fence(topic)
 
     def fence(self, topic: Topic) -> None:
         """See that the node has taken everything on a topic, by a message that it must refuse."""
