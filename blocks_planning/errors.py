@@ -38,3 +38,12 @@ class RecordError(InvalidInput):
 
 class LimitExceeded(BlocksPlanningError):
     """A computation that would outgrow its stated limit; nothing was computed."""
+
+
+def shown(value: object, most: int = 60) -> str:
+    """A value as an error message shows it: on one line, and cut after so many characters."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # thousands of digits, or of levels
+        return 'something too long to be shown'
+    return text if len(text) <= most else f'{text[: most - 3]}...'

@@ -9,13 +9,12 @@ from typing import Any, TypeVar
 
 import yaml
 
-from blocks_planning.errors import ConfigurationError, InvalidInput
+from blocks_planning.errors import ConfigurationError, InvalidInput, shown
 
 T = TypeVar('T')
 MAX_FILE_BYTES = 1 << 20
 MAX_VALUES = 100_000
 """A few lines of aliases of aliases would stand for more than any memory holds."""
-_SHOWN = 60
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,7 @@ class Located:
             return f'{len(self.content)} keys with values'
         if isinstance(self.content, list):
             return f'a list of {len(self.content)} items'
-        return _shown(self.content)
+        return shown(self.content)
 
     def plain(self) -> Any:
         """The value without places."""
@@ -83,14 +82,6 @@ class Located:
             return function()
         except InvalidInput as error:
             raise self.fail(str(error)) from None
-
-
-def _shown(value: object) -> str:
-    try:
-        text = repr(value)
-    except ValueError:  # thousands of digits
-        return 'something too long to be shown'
-    return text if len(text) <= _SHOWN else f'{text[: _SHOWN - 3]}...'
 
 
 def read_yaml(path: Path) -> Located:
@@ -146,12 +137,12 @@ class _Reader:
             raise
         except Exception:  # noqa: BLE001  such as !!bool maybe, which it does not expect itself
             raise ConfigurationError(
-                f'{place}: {_shown(node.value)} is no value that can be read'
+                f'{place}: {shown(node.value)} is no value that can be read'
             ) from None
 
     def _place(self, node: yaml.Node, key: str) -> str:
         line = f'{self._path}, line {node.start_mark.line + 1}'
-        return f'{line}, key {_shown(key)}' if key else line
+        return f'{line}, key {shown(key)}' if key else line
 
     def _entries(self, node: yaml.MappingNode) -> Iterator[tuple[str, Located]]:
         seen = set()

@@ -10,16 +10,7 @@ from collections.abc import Mapping
 from dataclasses import Field, fields
 from typing import Any
 
-from blocks_planning.errors import ConfigurationError
-
-
-def shown(value: object, most: int = 60) -> str:
-    """A value as an error message shows it: on one line, and cut after so many characters."""
-    try:
-        text = repr(value)
-    except (ValueError, RecursionError):  # thousands of digits, or of levels
-        return 'something too long to be shown'
-    return text if len(text) <= most else f'{text[: most - 3]}...'
+from blocks_planning.errors import ConfigurationError, shown
 
 
 def check_whole(name: str, value: object, least: int, most: int) -> None:

@@ -10,8 +10,7 @@ import re
 from typing import NamedTuple, TypeAlias
 
 from blocks_planning.board.geometry import MAX_SIDE, Column, Row
-from blocks_planning.errors import ConfigurationError
-from blocks_planning.settings import shown
+from blocks_planning.errors import ConfigurationError, shown
 
 MAX_BLOCKS = 64
 """Most blocks in a library."""

@@ -23,9 +23,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from blocks_planning.board.geometry import EMPTY, FILLED, MAX_SIDE, Board, Mask
-from blocks_planning.errors import StimulusError
+from blocks_planning.errors import StimulusError, shown
 from blocks_planning.resources import resource_directories
-from blocks_planning.settings import shown
 
 MAX_FILE_BYTES = 1 << 20
 _MOST_SHOWN = 200

@@ -18,7 +18,7 @@ from rosbags.highlevel import AnyReader
 
 from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Board
-from blocks_planning.errors import InvalidInput
+from blocks_planning.errors import InvalidInput, shown
 from blocks_planning.ros.bagging import BagError
 from blocks_planning.ros.bagging.repair import file_begins, is_finished, repair
 from blocks_planning.ros.conversions.board import state_from_ros
@@ -26,7 +26,6 @@ from blocks_planning.ros.conversions.cells import placed_from_ros
 from blocks_planning.ros.conversions.decisions import subgoal_from_ros
 from blocks_planning.ros.conversions.trial import ended_from_ros, started_from_ros
 from blocks_planning.ros.inbox import Inbox
-from blocks_planning.settings import shown
 from blocks_planning.trials import scribe, verify
 from blocks_planning.trials.consistency import Consistency
 from blocks_planning.trials.messages import Message, TrialStarted

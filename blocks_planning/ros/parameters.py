@@ -8,8 +8,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
 
-from blocks_planning.errors import ConfigurationError
-from blocks_planning.settings import shown
+from blocks_planning.errors import ConfigurationError, shown
 
 _BY_ROS = ('use_sim_time', 'start_type_description_service')
 

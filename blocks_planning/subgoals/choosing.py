@@ -7,9 +7,8 @@ import sys
 from collections.abc import Sequence
 
 from blocks_planning.board.geometry import Mask
-from blocks_planning.errors import ConfigurationError
+from blocks_planning.errors import ConfigurationError, shown
 from blocks_planning.search.randomness import Generator, mask_words
-from blocks_planning.settings import shown
 from blocks_planning.subgoals.decision import Candidate
 
 

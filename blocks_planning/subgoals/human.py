@@ -8,8 +8,8 @@ from typing import ClassVar
 
 from blocks_planning.board.geometry import Mask, area
 from blocks_planning.board.task import Task
-from blocks_planning.errors import ConfigurationError
-from blocks_planning.settings import check_word, shown
+from blocks_planning.errors import ConfigurationError, shown
+from blocks_planning.settings import check_word
 from blocks_planning.subgoals.decision import Candidate, Decision, Known, Query, subgoal_of
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind, decisive, target_of
 from blocks_planning.subgoals.regions import height_of

@@ -11,10 +11,10 @@ from blocks_planning.board.blocks import Placed, parse_library
 from blocks_planning.board.geometry import MAX_SIDE, Board, Mask
 from blocks_planning.board.stimuli import parse_silhouettes
 from blocks_planning.board.task import Task
-from blocks_planning.errors import InvalidInput, RecordError
+from blocks_planning.errors import InvalidInput, RecordError, shown
 from blocks_planning.search.result import MAX_BUDGET, SolveStatus
 from blocks_planning.search.searches import make_search
-from blocks_planning.settings import setting_names, shown
+from blocks_planning.settings import setting_names
 from blocks_planning.subgoals.decision import Candidate, Decision, Subgoal
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind
 from blocks_planning.subgoals.registry import STRATEGIES, make_strategy

@@ -6,8 +6,7 @@ from typing import Any, NamedTuple
 
 from blocks_planning.board.geometry import EMPTY, FILLED, Board, Mask
 from blocks_planning.board.task import Task
-from blocks_planning.errors import ConfigurationError, InvalidInput
-from blocks_planning.settings import shown
+from blocks_planning.errors import ConfigurationError, InvalidInput, shown
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind, target_of
 from blocks_planning.trials.messages import ProposalMade
 from blocks_planning.view.web.session import Session, turn_of
