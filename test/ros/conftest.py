@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
-import peers
 import pytest
+from graph_fixture import graph, pytest_sessionfinish  # noqa: F401
 from peers import Graph
 
 
-def pytest_sessionfinish(exitstatus: int) -> None:
-    """A process that had nodes ends with what the session says."""
-    peers.exit_status = int(exitstatus)
-
-
 @pytest.fixture
-def graph() -> Iterator[Graph]:
-    """An empty graph, taken down after the test."""
-    made = Graph()
-    yield made
-    made.close()
-
-
-@pytest.fixture
-def spin_until(graph: Graph) -> Callable[..., None]:
+def spin_until(graph: Graph) -> Callable[..., None]:  # noqa: F811
     """Spin the nodes of the graph until a condition holds."""
     return graph.spin_until
