@@ -68,13 +68,7 @@ class BagRecorder(GuardedNode):
         for repair in self._writer.repairs:
             self.get_logger().warning(str(repair))
         for topic, name in topics.items():
-            self.create_subscription(
-                topic.ros_type,
-                topic.name,
-                partial(self._record, name),
-                topic.subscription_qos,
-                raw=True,
-            )
+            self.take_bytes(topic, partial(self._record, name))
         self.create_timer(values['flush_period_s'], self._flush, clock=self.steady)
         self._peers = Peers(self)
         self._diagnostics = Diagnostics(self, self.health)

@@ -15,6 +15,7 @@ from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 
 from blocks_planning.ros.conversions.fields import MessageError, refuse
+from blocks_planning.ros.topics import Topic, ViewTopic
 
 MOST_BYTES = 8 << 20
 """Four times what the largest board and planner can have to say."""
@@ -58,6 +59,12 @@ class GuardedNode(Node):
             f'refused {what}: {said[:_SHOWN]} ({self.refused} refused so far)',
             throttle_duration_sec=WARN_PERIOD_S,
             throttle_time_source_type=self.steady,
+        )
+
+    def take_bytes(self, topic: Topic | ViewTopic, callback: Callable[..., None]) -> None:
+        """Subscribe to a topic; its messages are handed on as they travel, as CDR."""
+        self.create_subscription(
+            topic.ros_type, topic.name, callback, topic.subscription_qos, raw=True
         )
 
     def create_service(

@@ -139,7 +139,7 @@ class Journal:
 
     def _open(self, path: Path, placements: list[Placed]) -> int:
         """Write all anew, so that nothing torn is left, and open it for more."""
-        for old in sorted(self._folder.glob(f'*{SUFFIX}'), key=_age_s)[MOST_KEPT:]:
+        for old in sorted(self._folder.glob(f'*{SUFFIX}'), key=_latest_first)[MOST_KEPT:]:
             old.unlink(missing_ok=True)
         temporary = path.with_suffix('.new')
         with temporary.open('wb') as file:
@@ -188,7 +188,7 @@ def _line(placed: Placed) -> bytes:
     return b'%d %d %d %d\n' % placed
 
 
-def _age_s(path: Path) -> float:
+def _latest_first(path: Path) -> float:
     try:
         return -path.stat().st_mtime
     except OSError:  # gone already

@@ -92,13 +92,7 @@ class PartNode(GuardedNode):
 
     def listen(self, topic: Topic) -> None:
         """Subscribe to a topic."""
-        self.create_subscription(
-            topic.ros_type,
-            topic.name,
-            partial(self._receive, topic),
-            topic.subscription_qos,
-            raw=True,
-        )
+        self.take_bytes(topic, partial(self._receive, topic))
 
     def take(self, message: Message) -> None:
         """Let the part step, and say what it says."""

@@ -86,6 +86,21 @@ class Consistency:
 
     def _check_subgoal(self, chosen: SubgoalChosen) -> None:
         decisions = chosen.decisions
+        self._check_decisions(decisions)
+        if chosen.proposals and not isinstance(self.spec.strategy, Human):
+            raise Contradiction('proposals: no person takes part')
+        begun = [(entry.placed, entry.decision.built) for entry in decisions]
+        for sequence, built in [*begun, (chosen.sequence, chosen.built)]:
+            if sequence < len(self._states) and self._states[sequence] != built:
+                raise Contradiction(f'built: is not the state after {sequence} placements')
+        least = decisions[-1].placed
+        most = least if chosen.index == 0 else self.spec.task.board.size
+        if not least <= chosen.sequence <= most:
+            raise Contradiction(f'sequence: must be {least} to {most} after these decisions')
+        if len(decisions) >= len(self._decisions):
+            self._decisions = decisions
+
+    def _check_decisions(self, decisions: tuple[DecisionRecord, ...]) -> None:
         places = [entry.placed for entry in decisions]
         if places[0] != 0 or places != sorted(set(places)):
             raise Contradiction('decisions: are not in the order of their states, from the first')
@@ -94,19 +109,8 @@ class Consistency:
         for index, entry in enumerate(decisions):
             for subgoal in entry.decision.subgoals:
                 self._check_blocks(subgoal.placements, f'decisions[{index}]')
-        if chosen.proposals and not isinstance(self.spec.strategy, Human):
-            raise Contradiction('proposals: no person takes part')
         if not _is_one_way(*map(_decided, (self._decisions, decisions))):
             raise Contradiction('decisions: do not go on from those before')
-        begun = [(entry.placed, entry.decision.built) for entry in decisions]
-        for sequence, built in [*begun, (chosen.sequence, chosen.built)]:
-            if sequence < len(self._states) and self._states[sequence] != built:
-                raise Contradiction(f'built: is not the state after {sequence} placements')
-        least, most = places[-1], places[-1] if chosen.index == 0 else self.spec.task.board.size
-        if not least <= chosen.sequence <= most:
-            raise Contradiction(f'sequence: must be {least} to {most} after these decisions')
-        if len(decisions) >= len(self._decisions):
-            self._decisions = decisions
 
     def _check_blocks(self, placements: Iterable[Placed], field: str) -> None:
         library = self.spec.task.library
