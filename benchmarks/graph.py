@@ -19,7 +19,7 @@ from benchmarks.processes import NODES, Taken, process, resources
 from blocks_planning.board.blocks import Block, Placement
 from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
-from blocks_planning.ros.domain import Domain
+from blocks_planning.ros.runtime.domain import Domain
 from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.registry import make_strategy
 from blocks_planning.trials import world
@@ -63,8 +63,8 @@ def echo() -> None:
     """A node of nothing but rclpy, which answers an action with a message made beforehand."""
     from rclpy.node import Node
 
-    from blocks_planning.ros.runtime import run as run_node
-    from blocks_planning.ros.topics import ACTION, STATE
+    from blocks_planning.ros.runtime.process import run as run_node
+    from blocks_planning.ros.wire.topics import ACTION, STATE
 
     answers = [STATE.to_ros(BOARD, state) for state in _states()]
 
@@ -102,7 +102,7 @@ def _round_trips(command: list[str], rounds: int) -> list[float]:
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.node import Node
 
-    from blocks_planning.ros.topics import ACTION, STATE, TRIAL
+    from blocks_planning.ros.wire.topics import ACTION, STATE, TRIAL
 
     rclpy.init(args=[])
     caller = Node('caller')

@@ -22,8 +22,8 @@ from aiohttp import ClientError, ClientSession, WSMsgType
 from benchmarks.graph import DEADLINE_S, _wait_for_records
 from benchmarks.measure import Figure
 from benchmarks.processes import process
-from blocks_planning.ros.domain import Domain
-from blocks_planning.ros.reserving import ReservedPort
+from blocks_planning.ros.runtime.domain import Domain
+from blocks_planning.ros.runtime.reserving import ReservedPort
 
 NOBODY, PAGE, LOOKED_AT = 'without the page', 'with the page', 'page, and who looks'
 

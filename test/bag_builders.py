@@ -20,9 +20,9 @@ from mcap.stream_reader import StreamReader
 from rclpy.serialization import deserialize_message, serialize_message
 from rosbags.highlevel import AnyReader
 
-from blocks_planning.ros.bag_recorder import recorded_topic
 from blocks_planning.ros.bagging.writer import BagWriter
-from blocks_planning.ros.topics import OUTCOME, TOPICS, TRIAL, Topic
+from blocks_planning.ros.nodes.bag_recorder import recorded_topic
+from blocks_planning.ros.wire.topics import OUTCOME, TOPICS, TRIAL, Topic
 from blocks_planning.search.result import CancelToken
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import Message

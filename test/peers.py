@@ -12,7 +12,7 @@ from functools import cache, partial
 from typing import Any, TypeVar
 from uuid import uuid4
 
-from blocks_planning.ros.domain import Domain
+from blocks_planning.ros.runtime.domain import Domain
 
 # Before anything of rclpy is imported. The claim holds as long as this process lives.
 DOMAIN = Domain()
@@ -27,9 +27,9 @@ from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from rclpy.signals import SignalHandlerOptions  # noqa: E402
 
-from blocks_planning.ros.graph import NodeTopics  # noqa: E402
-from blocks_planning.ros.part_node import PartNode  # noqa: E402
-from blocks_planning.ros.topics import TOPICS, TRIAL, Topic  # noqa: E402
+from blocks_planning.ros.runtime.part_node import PartNode  # noqa: E402
+from blocks_planning.ros.wire.graph import NodeTopics  # noqa: E402
+from blocks_planning.ros.wire.topics import TOPICS, TRIAL, Topic  # noqa: E402
 from blocks_planning.trials.messages import Message  # noqa: E402
 from blocks_planning.trials.spec import TrialSpec  # noqa: E402
 

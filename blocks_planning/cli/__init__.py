@@ -73,7 +73,7 @@ def main() -> None:
 
 
 def _leave(code: int) -> NoReturn:
-    runtime = sys.modules.get('blocks_planning.ros.runtime')
+    runtime = sys.modules.get('blocks_planning.ros.runtime.process')
     if runtime is not None:
         runtime.leave_if_up(code)
     sys.exit(code)

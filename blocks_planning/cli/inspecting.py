@@ -180,7 +180,7 @@ def _import_bags(path: Path) -> ModuleType:
         ConfigurationError: if the interfaces, or what reads MCAP, are not installed.
     """
     try:
-        from blocks_planning.ros import bags
+        from blocks_planning.ros.bagging import bags
     except ModuleNotFoundError as error:
         missing = str(error.name).partition('.')[0]
         raise ConfigurationError(

@@ -12,7 +12,7 @@ from blocks_planning.board.stimuli import Stimulus, find_stimuli
 from blocks_planning.board.task import Task
 from blocks_planning.search.result import DEFAULT_BUDGET
 from blocks_planning.search.searches import DIVISORS, EXECUTIONS, SEARCHES, make_search
-from blocks_planning.subgoals.registry import PLANNERS, make_planner
+from blocks_planning.subgoals.registry import make_planner, planner_names
 from blocks_planning.subgoals.scoping import COMMITS
 from blocks_planning.trials.spec import TrialSpec
 
@@ -33,7 +33,7 @@ _SEARCH_SETTINGS = ('depth', 'iterations', 'divisor', 'execute')
 _PLANNER_OPTIONS = (
     click.option(
         '--strategy',
-        type=click.Choice(list(PLANNERS)),
+        type=click.Choice(planner_names()),
         default='scoping',
         show_default=True,
         help='How subgoals are chosen.',

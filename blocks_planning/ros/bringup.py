@@ -14,14 +14,14 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
 from blocks_planning.errors import BlocksPlanningError
-from blocks_planning.ros.domain import Domain
-from blocks_planning.ros.graph import TRIAL_VIEW, WATCHER
-from blocks_planning.ros.processes import NodeProcess, stop_all
-from blocks_planning.ros.reserving import ReservedPort
-from blocks_planning.ros.runtime import BAD_INPUT
-from blocks_planning.ros.trial_orchestrator import RECORDS, WAIT_FOR
-from blocks_planning.ros.trial_view import TOKEN_VARIABLE
-from blocks_planning.ros.watcher import Watcher
+from blocks_planning.ros.nodes.trial_orchestrator import RECORDS, WAIT_FOR
+from blocks_planning.ros.nodes.trial_view import TOKEN_VARIABLE
+from blocks_planning.ros.runtime.domain import Domain
+from blocks_planning.ros.runtime.process import BAD_INPUT
+from blocks_planning.ros.runtime.processes import NodeProcess, stop_all
+from blocks_planning.ros.runtime.reserving import ReservedPort
+from blocks_planning.ros.runtime.watcher import Watcher
+from blocks_planning.ros.wire.graph import TRIAL_VIEW, WATCHER
 from blocks_planning.view.scene import Scene
 from blocks_planning.view.web.guards import Address, address_of
 
@@ -134,7 +134,7 @@ class Bringup:
     def run(self, on_tick: Callable[[Scene | None], None]) -> int:
         """Run the script to its end; always take all processes down again.
 
-        Of this process, rclpy stays up: see :func:`blocks_planning.ros.runtime.leave_if_up`.
+        Of this process, rclpy stays up: see :func:`blocks_planning.ros.runtime.process.leave_if_up`.
 
         Args:
             on_tick: called some times a second with what there is to see.

@@ -16,7 +16,7 @@ from importlib import import_module
 def _start(name: str) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(0))
-    import_module(f'blocks_planning.ros.{name}').main()
+    import_module(f'blocks_planning.ros.nodes.{name}').main()
 
 
 def world() -> None:

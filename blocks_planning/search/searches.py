@@ -1,8 +1,8 @@
 """The action-level searches by name, with their settings.
 
-A search is a frozen dataclass whose fields are its settings, all whole numbers or words. It has
-``run(problem, seed, budget, cancel)``, which may assume that the problem is neither solved
-already nor without a legal placement: :func:`.solve.solve` has looked.
+A search is a frozen dataclass whose fields are its settings (:mod:`blocks_planning.settings`). Its
+``run(problem, seed, budget, cancel)`` may assume that the problem is neither solved already nor
+without a legal placement: :func:`.solve.solve` checks both first.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
-from blocks_planning import settings
 from blocks_planning.board.task import Task
+from blocks_planning.families import Registry
 from blocks_planning.search.result import CancelToken, Problem, SolveResult
-from blocks_planning.settings import check_whole, check_word
+from blocks_planning.settings import Configured, setting
 
 MAX_DEPTH = 64
 MAX_ITERATIONS = 1_000_000
@@ -37,7 +37,7 @@ class Search(Protocol):
 
 
 @dataclass(frozen=True)
-class RandomPlacement:
+class RandomPlacement(Configured):
     """A legal placement, uniformly, until none is left. Cost 0."""
 
     name: ClassVar[str] = 'random'
@@ -50,7 +50,7 @@ class RandomPlacement:
 
 
 @dataclass(frozen=True)
-class BreadthFirst:
+class BreadthFirst(Configured):
     """Breadth-first lookahead of ``depth`` placements (paper, section "Action-level planning").
 
     It executes the first placement towards the best state seen, uniformly among equals, and
@@ -58,10 +58,9 @@ class BreadthFirst:
     """
 
     name: ClassVar[str] = 'bfs'
-    depth: int = 3
-
-    def __post_init__(self) -> None:
-        check_whole('depth', self.depth, 1, MAX_DEPTH)
+    depth: int = setting(
+        3, 'Placements that the search looks ahead.', least=1, most=MAX_DEPTH, unit='placements'
+    )
 
     def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
         """See :class:`Search`."""
@@ -70,16 +69,29 @@ class BreadthFirst:
         return compiled.solve_breadth_first(problem, self.depth, seed, budget, cancel)
 
 
+def _iterations() -> Any:
+    return setting(
+        4096,
+        'Nodes taken from the queue in one search.',
+        least=2,
+        most=MAX_ITERATIONS,
+        unit='nodes',
+    )
+
+
+def _execute() -> Any:
+    return setting(
+        'first', 'Placements executed of a path that is not complete.', choices=EXECUTIONS
+    )
+
+
 @dataclass(frozen=True)
-class AStar:
+class AStar(Configured):
     """A* for some iterations; f = blocks placed + cells left / divisor.
 
-    Attributes:
-        iterations: nodes taken from the queue in one search.
-        divisor: 'smallest' block area (the paper's text), 'mean' (its published numbers) or
-            'largest' (admissible).
-        execute: of a search that did not complete, the 'first' placement (the paper's text) or
-            the whole 'path' (its published numbers).
+    The divisor is the 'smallest' block area (the paper's text), the 'mean' (its published numbers)
+    or the 'largest' (admissible). A search that did not complete executes the 'first' placement
+    of its path (the paper's text) or the whole 'path' (its published numbers).
 
     f is a float64, as in the paper's own program, and nodes are equal if their f is. With the
     mean divisor 4.8 some values that are equal as fractions differ in the last bit, which the
@@ -87,14 +99,11 @@ class AStar:
     """
 
     name: ClassVar[str] = 'astar'
-    iterations: int = 4096
-    divisor: str = 'smallest'
-    execute: str = 'first'
-
-    def __post_init__(self) -> None:
-        check_whole('iterations', self.iterations, 2, MAX_ITERATIONS)
-        check_word('divisor', self.divisor, DIVISORS)
-        check_word('execute', self.execute, EXECUTIONS)
+    iterations: int = _iterations()
+    divisor: str = setting(
+        'smallest', 'Block area that divides the cells left in the heuristic.', choices=DIVISORS
+    )
+    execute: str = _execute()
 
     def divisor_of(self, task: Task) -> float:
         """The divisor of the cells left [cells]."""
@@ -119,16 +128,12 @@ class AStar:
 
 
 @dataclass(frozen=True)
-class BestFirst:
+class BestFirst(Configured):
     """A* with the blocks placed left out: the fewest cells left come first."""
 
     name: ClassVar[str] = 'best_first'
-    iterations: int = 4096
-    execute: str = 'first'
-
-    def __post_init__(self) -> None:
-        check_whole('iterations', self.iterations, 2, MAX_ITERATIONS)
-        check_word('execute', self.execute, EXECUTIONS)
+    iterations: int = _iterations()
+    execute: str = _execute()
 
     def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
         """See :class:`Search`."""
@@ -140,7 +145,7 @@ class BestFirst:
 
 
 @dataclass(frozen=True)
-class Exact:
+class Exact(Configured):
     """The fewest blocks, or proof that there is no way. Not a model of people: the yardstick.
 
     Its cost is the number of states that its dynamic program generates by placing a block.
@@ -159,12 +164,14 @@ class Exact:
         return exact.solve_exactly(problem, cancel)
 
 
-SEARCHES: Mapping[str, type[Any]] = {
-    search.name: search for search in (BreadthFirst, AStar, BestFirst, RandomPlacement, Exact)
-}
+SEARCHES = Registry(
+    'search',
+    'blocks_planning.searches',
+    (BreadthFirst, AStar, BestFirst, RandomPlacement, Exact),
+)
 
 
-def make_search(name: object, values: Mapping[str, Any]) -> Search:
-    """The search of a name; see :func:`blocks_planning.settings.make`."""
-    search: Search = settings.make('search', SEARCHES, name, values)
+def make_search(name: object, values: Mapping[str, object]) -> Search:
+    """The search of a name with some settings; see :meth:`.Registry.make`."""
+    search: Search = SEARCHES.make(name, values)
     return search

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Sequence
 
 from blocks_planning.board.geometry import Mask
-from blocks_planning.errors import ConfigurationError, shown
 from blocks_planning.search.randomness import Generator, mask_words
 from blocks_planning.subgoals.decision import Candidate
 
@@ -28,17 +26,3 @@ def best(candidates: Sequence[Candidate], seed: int, built: Mask) -> int | None:
     highest = max(values)
     ties = [index for index, candidate in enumerate(candidates) if candidate.value == highest]
     return ties[Generator([seed, *mask_words(built)]).below(len(ties))]
-
-
-def check_lambda(lam: object, *, zero_allowed: bool) -> float:
-    """Return lambda as a float, if it is one that can be used.
-
-    Raises:
-        ConfigurationError: if it is not a finite number of 0 or more (above 0 if it must be).
-    """
-    if isinstance(lam, (int, float)) and not isinstance(lam, bool):
-        least = 0.0 if zero_allowed else math.nextafter(0.0, 1.0)
-        if least <= lam <= sys.float_info.max:
-            return float(lam)
-    bound = 'of 0 or more' if zero_allowed else 'above 0'
-    raise ConfigurationError(f'lambda must be a finite number {bound}, got {shown(lam)}')

@@ -94,6 +94,7 @@ class Strategy(Protocol):
     """A subgoal planner; its fields are its settings."""
 
     name: ClassVar[str]
+    asks_person: ClassVar[bool]
 
     def decide(
         self,

@@ -8,13 +8,14 @@ m (m + 1) / 2 different queries; each is counted in every sequence that asks it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar
 
 from blocks_planning.board.geometry import Mask, area
 from blocks_planning.board.task import Task
 from blocks_planning.search.result import SolveStatus
-from blocks_planning.subgoals.choosing import best, check_lambda, value_of
+from blocks_planning.settings import Configured, setting
+from blocks_planning.subgoals.choosing import best, value_of
 from blocks_planning.subgoals.decision import (
     Candidate,
     Decision,
@@ -28,19 +29,17 @@ from blocks_planning.subgoals.regions import Region, regions_above
 
 
 @dataclass(frozen=True)
-class FullSubgoals:
+class FullSubgoals(Configured):
     """The sequence of subgoals of highest value (paper, section "Full-subgoal planning").
 
-    Attributes:
-        lam: lambda, what a state evaluated costs in cells [cells / state], above 0. All complete
-            sequences add the same cells, so any lambda prefers the cheapest.
+    All complete sequences add the same cells, so any lambda above 0 prefers the cheapest.
     """
 
     name: ClassVar[str] = 'full'
-    lam: float = field(default=1.0, metadata={'setting': 'lambda'})
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, 'lam', check_lambda(self.lam, zero_allowed=False))
+    asks_person: ClassVar[bool] = False
+    lam: float = setting(
+        1.0, 'Cost per evaluated state, in cells.', name='lambda', above=0, unit='cells / state'
+    )
 
     def decide(
         self,

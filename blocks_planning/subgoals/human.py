@@ -2,38 +2,32 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import ClassVar
 
 from blocks_planning.board.geometry import Mask, area
 from blocks_planning.board.task import Task
-from blocks_planning.errors import ConfigurationError, shown
-from blocks_planning.settings import check_word
+from blocks_planning.settings import Configured, setting
 from blocks_planning.subgoals.decision import Candidate, Decision, Known, Query, subgoal_of
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind, decisive, target_of
 from blocks_planning.subgoals.regions import height_of
 
 COSTS = ('shown', 'hidden')
-_CODE = re.compile(r'[A-Za-z0-9_-]{0,32}')
 
 
 @dataclass(frozen=True)
-class Human:
-    """Regions of any shape, one after the other, until one can be built.
-
-    Attributes:
-        participant: a code for the person; no personal data.
-        costs: whether the person is 'shown' what was evaluated, or it is 'hidden'.
-    """
+class Human(Configured):
+    """Regions of any shape, proposed by a person one after the other until one can be built."""
 
     name: ClassVar[str] = 'human'
-    participant: str = ''
-    costs: str = 'shown'
-
-    def __post_init__(self) -> None:
-        _check_code(self.participant)
-        check_word('costs', self.costs, COSTS)
+    asks_person: ClassVar[bool] = True
+    participant: str = setting(
+        '',
+        'Code of the person; no personal data.',
+        pattern=r'[A-Za-z0-9_-]{0,32}',
+        expected='a code of up to 32 letters, digits, _ and -',
+    )
+    costs: str = setting('shown', 'Whether the person sees the planning costs.', choices=COSTS)
 
     def decide(
         self,
@@ -69,13 +63,6 @@ class Human:
                 chosen = len(candidates) - 1
                 return Decision(built, tuple(candidates), chosen, (subgoal,), considered + cost)
         return []
-
-
-def _check_code(value: object) -> None:
-    if not isinstance(value, str) or not _CODE.fullmatch(value):
-        raise ConfigurationError(
-            f'participant must be a code of up to 32 letters, digits, _ and -, got {shown(value)}'
-        )
 
 
 def used(task: Task, decision: Decision, proposals: tuple[Proposal, ...]) -> tuple[Proposal, ...]:

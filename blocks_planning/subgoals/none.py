@@ -7,16 +7,18 @@ from typing import ClassVar
 
 from blocks_planning.board.geometry import Mask, area
 from blocks_planning.board.task import Task
+from blocks_planning.settings import Configured
 from blocks_planning.subgoals.decision import Candidate, Decision, Known, Query, subgoal_of
 from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.subgoals.regions import regions_above
 
 
 @dataclass(frozen=True)
-class NoSubgoals:
+class NoSubgoals(Configured):
     """Action-level search for the whole tower (paper, "no subgoal planning")."""
 
     name: ClassVar[str] = 'none'
+    asks_person: ClassVar[bool] = False
 
     def decide(
         self,

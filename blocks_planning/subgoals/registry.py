@@ -3,29 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
-from blocks_planning import settings
+from blocks_planning.errors import ConfigurationError
+from blocks_planning.families import Registry
 from blocks_planning.subgoals.decision import Strategy
 from blocks_planning.subgoals.full import FullSubgoals
 from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.none import NoSubgoals
 from blocks_planning.subgoals.scoping import Scoping
 
-PLANNERS: Mapping[str, type[Any]] = {
-    strategy.name: strategy for strategy in (NoSubgoals, Scoping, FullSubgoals)
-}
-"""Those that decide by themselves."""
-STRATEGIES: Mapping[str, type[Any]] = {**PLANNERS, Human.name: Human}
+STRATEGIES = Registry(
+    'strategy', 'blocks_planning.strategies', (NoSubgoals, Scoping, FullSubgoals, Human)
+)
 
 
-def make_strategy(name: object, values: Mapping[str, Any]) -> Strategy:
-    """The strategy of a name; see :func:`blocks_planning.settings.make`."""
-    strategy: Strategy = settings.make('strategy', STRATEGIES, name, values)
+def make_strategy(name: object, values: Mapping[str, object]) -> Strategy:
+    """The strategy of a name with some settings; see :meth:`.Registry.make`."""
+    strategy: Strategy = STRATEGIES.make(name, values)
     return strategy
 
 
-def make_planner(name: object, values: Mapping[str, Any]) -> Strategy:
-    """The strategy of a name that needs no person; else as :func:`make_strategy`."""
-    planner: Strategy = settings.make('strategy', PLANNERS, name, values)
-    return planner
+def planner_names() -> tuple[str, ...]:
+    """The strategies that decide by themselves."""
+    return tuple(name for name, cls in STRATEGIES.items() if not cls.asks_person)
+
+
+def make_planner(name: object, values: Mapping[str, object]) -> Strategy:
+    """A strategy that decides by itself; else as :func:`make_strategy`."""
+    strategy = make_strategy(name, values)
+    if strategy.asks_person:
+        raise ConfigurationError(
+            f'strategy must be one of {", ".join(planner_names())}, got {name!r}: it asks a person'
+        )
+    return strategy

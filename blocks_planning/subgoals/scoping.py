@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar
 
 from blocks_planning.board.geometry import Mask, area
 from blocks_planning.board.task import Task
-from blocks_planning.settings import check_word
-from blocks_planning.subgoals.choosing import best, check_lambda, value_of
+from blocks_planning.settings import Configured, setting
+from blocks_planning.subgoals.choosing import best, value_of
 from blocks_planning.subgoals.decision import Candidate, Decision, Known, Query, subgoal_of
 from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.subgoals.regions import regions_above
@@ -17,22 +17,21 @@ COMMITS = ('subgoal', 'action')
 
 
 @dataclass(frozen=True)
-class Scoping:
+class Scoping(Configured):
     """One subgoal at a time, the one of highest value (paper, section "Visual scoping").
 
-    Attributes:
-        lam: lambda, what a state evaluated costs in cells [cells / state], 0 or more.
-        commit: execute the whole plan of a 'subgoal' (the paper's text and numbers), or only its
-            first 'action'.
+    It executes the whole plan of a 'subgoal' (the paper's text and numbers), or only its first
+    'action'.
     """
 
     name: ClassVar[str] = 'scoping'
-    lam: float = field(default=0.002, metadata={'setting': 'lambda'})
-    commit: str = 'subgoal'
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, 'lam', check_lambda(self.lam, zero_allowed=True))
-        check_word('commit', self.commit, COMMITS)
+    asks_person: ClassVar[bool] = False
+    lam: float = setting(
+        0.002, 'Cost per evaluated state, in cells.', name='lambda', least=0, unit='cells / state'
+    )
+    commit: str = setting(
+        'subgoal', 'Part of the plan executed before the next decision.', choices=COMMITS
+    )
 
     def decide(
         self,

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterator
-from dataclasses import fields
 from math import inf
 from typing import Any
 
 from blocks_planning.search.result import SolveStatus
-from blocks_planning.settings import setting_name
+from blocks_planning.settings import described
 from blocks_planning.subgoals.decision import Candidate, Decision
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
@@ -56,11 +55,11 @@ def _with_settings(thing: Any) -> str:
 
 
 def _settings(thing: Any) -> Iterator[str]:
-    for field in fields(thing):
-        value = getattr(thing, field.name)
-        if isinstance(value, (int, float)) or value != field.default:
+    for attribute, known in described(type(thing)):
+        value = getattr(thing, attribute)
+        if isinstance(value, (int, float)) or value != known.default:
             text = f'{value:,}' if isinstance(value, int) else f'{value}'
-            yield f'{setting_name(field)} {text}'
+            yield f'{known.name} {text}'
 
 
 def counted(count: int, noun: str) -> str:

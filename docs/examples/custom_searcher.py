@@ -3,7 +3,8 @@
 import rclpy.node
 from blocks_planning_msgs import msg
 
-from blocks_planning.ros import qos, runtime
+from blocks_planning.ros.runtime import process
+from blocks_planning.ros.wire import qos
 
 
 class MySearcher(rclpy.node.Node):
@@ -68,4 +69,4 @@ class MySearcher(rclpy.node.Node):
 
 
 if __name__ == '__main__':
-    runtime.run(lambda _: MySearcher())
+    process.run(lambda _: MySearcher())

@@ -3,7 +3,8 @@
 import rclpy.node
 from blocks_planning_msgs import msg
 
-from blocks_planning.ros import qos, runtime
+from blocks_planning.ros.runtime import process
+from blocks_planning.ros.wire import qos
 
 
 class FakeRobot(rclpy.node.Node):
@@ -63,4 +64,4 @@ class FakeRobot(rclpy.node.Node):
 
 
 if __name__ == '__main__':
-    runtime.run(lambda _: FakeRobot())
+    process.run(lambda _: FakeRobot())

@@ -27,8 +27,8 @@ from rclpy.action.client import ActionClient, GoalStatus
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-from blocks_planning.ros.conversions.trial import spec_to_ros
-from blocks_planning.ros.processes import NodeProcess, stop_all
+from blocks_planning.ros.runtime.processes import NodeProcess, stop_all
+from blocks_planning.ros.wire.conversions.trial import spec_to_ros
 from blocks_planning.trials.local import run_trial
 
 BOUND_S = 0.2

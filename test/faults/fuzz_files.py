@@ -35,9 +35,9 @@ from blocks_planning.board.stimuli import read_file
 from blocks_planning.cli import main as command
 from blocks_planning.errors import BlocksPlanningError
 from blocks_planning.experiments.reading import read_sweep
-from blocks_planning.ros.bags import repair, trials_of
-from blocks_planning.ros.journal import Journal
-from blocks_planning.ros.runtime import initialise
+from blocks_planning.ros.bagging.bags import repair, trials_of
+from blocks_planning.ros.runtime.journal import Journal
+from blocks_planning.ros.runtime.process import initialise
 from blocks_planning.trials import script
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.recordfile import RecordFile

@@ -29,7 +29,7 @@ from rclpy.action.client import ActionClient
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-from blocks_planning.ros.topics import TOPICS, Topic
+from blocks_planning.ros.wire.topics import TOPICS, Topic
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.script import read_script
 from faults.hostile import Hostile

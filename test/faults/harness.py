@@ -13,7 +13,7 @@ from typing import Any
 from graphs import COMMAND, local_lines, record_lines, write_script
 from peers import Graph
 
-from blocks_planning.ros import bags
+from blocks_planning.ros.bagging import bags
 from faults.plan import BRINGUP, Fault, make_plan
 from faults.report import Report
 from faults.subject import Observer, Subject, send

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 from rclpy.serialization import serialize_message
 
 from blocks_planning.errors import InvalidInput
-from blocks_planning.ros.guarded import read_message
-from blocks_planning.ros.topics import (
+from blocks_planning.ros.runtime.guarded import read_message
+from blocks_planning.ros.wire.topics import (
     ACTION,
     OUTCOME,
     PROPOSAL,

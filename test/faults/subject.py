@@ -16,7 +16,7 @@ import graphs
 from peers import DOMAIN
 from rclpy.node import Node
 
-from blocks_planning.ros.topics import ACTION, OUTCOME, SEARCH_REQUEST, STATE, TRIAL
+from blocks_planning.ros.wire.topics import ACTION, OUTCOME, SEARCH_REQUEST, STATE, TRIAL
 
 HEARD = (TRIAL, STATE, SEARCH_REQUEST, ACTION, OUTCOME)
 

@@ -11,7 +11,7 @@ from statistics import median
 from peers import DEADLINE_S, Graph, Peer
 from rclpy.action.client import GoalStatus
 
-from blocks_planning.ros.topics import SEARCH_REQUEST, TRIAL
+from blocks_planning.ros.wire.topics import SEARCH_REQUEST, TRIAL
 from blocks_planning.subgoals.decision import Query
 from blocks_planning.trials.messages import SearchRequest, TrialStarted
 from faults.cancels import BOUND_S, LONG, cancel_often, nodes

@@ -13,8 +13,8 @@ from graphs import NODES
 
 from blocks_planning.errors import ConfigurationError, RecordError
 from blocks_planning.located import MAX_FILE_BYTES, MAX_VALUES, read_yaml
-from blocks_planning.ros.bags import trials_of
-from blocks_planning.ros.topics import STATE, TRIAL
+from blocks_planning.ros.bagging.bags import trials_of
+from blocks_planning.ros.wire.topics import STATE, TRIAL
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.script import read_script
 from faults import fuzz_files, fuzz_messages

@@ -23,16 +23,16 @@ from rosbags.highlevel import AnyReader
 from std_msgs.msg import Header
 
 from blocks_planning.errors import ConfigurationError
-from blocks_planning.ros.bag_recorder import BagRecorder
 from blocks_planning.ros.bagging import BagError
+from blocks_planning.ros.bagging.bags import trials_of
 from blocks_planning.ros.bagging.repair import is_finished, repair
-from blocks_planning.ros.bags import trials_of
-from blocks_planning.ros.conversions.markers import markers_to_ros
-from blocks_planning.ros.topics import MARKERS, TOPICS, TRIAL, Topic
+from blocks_planning.ros.nodes.bag_recorder import BagRecorder
+from blocks_planning.ros.wire.conversions.markers import markers_to_ros
+from blocks_planning.ros.wire.topics import MARKERS, TOPICS, TRIAL, Topic
 from blocks_planning.view.scene import scene_of
 from blocks_planning.view.solids import solids_of
 
-COMMAND = [sys.executable, '-m', 'blocks_planning.ros.bag_recorder', '--ros-args']
+COMMAND = [sys.executable, '-m', 'blocks_planning.ros.nodes.bag_recorder', '--ros-args']
 DEADLINE_S = 30.0
 STOP_S = 2.0
 """Starting to stop takes no longer than this, also on a busy machine."""

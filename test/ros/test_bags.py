@@ -34,11 +34,11 @@ from rosbags.highlevel import AnyReader
 
 from blocks_planning.cli import main
 from blocks_planning.ros.bagging import BagError
+from blocks_planning.ros.bagging.bags import RecordedTrial, trials_of
 from blocks_planning.ros.bagging.definitions import definition_of, type_hash_of
 from blocks_planning.ros.bagging.metadata import FileSummary, RecordedTopic, information
 from blocks_planning.ros.bagging.repair import _records, is_finished, repair
-from blocks_planning.ros.bags import RecordedTrial, trials_of
-from blocks_planning.ros.topics import OUTCOME, STATE, SUBGOAL, TOPICS, TRIAL
+from blocks_planning.ros.wire.topics import OUTCOME, STATE, SUBGOAL, TOPICS, TRIAL
 from blocks_planning.search.result import CancelToken
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import Message, TrialEnded
@@ -699,7 +699,7 @@ def test_without_ros_one_line_says_what_is_missing(missing: str, bag: Path) -> N
 
 def test_reading_needs_no_middleware(bag: Path) -> None:
     code = (
-        'import sys; from pathlib import Path; from blocks_planning.ros.bags import trials_of;'
+        'import sys; from pathlib import Path; from blocks_planning.ros.bagging.bags import trials_of;'
         f'assert list(trials_of(Path({str(bag)!r})));'
         'assert "rclpy" not in sys.modules'
     )

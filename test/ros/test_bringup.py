@@ -26,9 +26,9 @@ from peers import Graph, Peer
 from rclpy.node import Node
 from rosbags.highlevel import AnyReader
 
-from blocks_planning.ros.bags import trials_of
-from blocks_planning.ros.domain import Domain
-from blocks_planning.ros.topics import MARKERS, TOPICS, TRIAL
+from blocks_planning.ros.bagging.bags import trials_of
+from blocks_planning.ros.runtime.domain import Domain
+from blocks_planning.ros.wire.topics import MARKERS, TOPICS, TRIAL
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.script import read_script
 from blocks_planning.trials.verify import contradictions

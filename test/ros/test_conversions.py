@@ -20,15 +20,15 @@ from strategies import boards, positions, solvable_tasks, tasks
 
 from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.board.task import Task
-from blocks_planning.ros.conversions.cells import grid_from_ros, grid_to_ros
-from blocks_planning.ros.conversions.fields import MAX_COST, MessageError
-from blocks_planning.ros.conversions.trial import (
+from blocks_planning.ros.wire.conversions.cells import grid_from_ros, grid_to_ros
+from blocks_planning.ros.wire.conversions.fields import MAX_COST, MessageError
+from blocks_planning.ros.wire.conversions.trial import (
     outcome_to_ros,
     spec_from_ros,
     spec_to_ros,
     started_from_ros,
 )
-from blocks_planning.ros.topics import OUTCOME, STATE, SUBGOAL, TOPICS, TRIAL, Topic
+from blocks_planning.ros.wire.topics import OUTCOME, STATE, SUBGOAL, TOPICS, TRIAL, Topic
 from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.human import COSTS, Human
 from blocks_planning.subgoals.registry import make_strategy

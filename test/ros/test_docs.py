@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from source_imports import ROOT
 
-from blocks_planning.ros.graph import GRAPH
-from blocks_planning.ros.topics import TOPICS, VIEW_TOPICS, Topic, ViewTopic
+from blocks_planning.ros.wire.graph import GRAPH
+from blocks_planning.ros.wire.topics import TOPICS, VIEW_TOPICS, Topic, ViewTopic
 
 PAGE = (ROOT / 'docs' / 'ros.md').read_text(encoding='utf-8')
 MESSAGES = sorted((ROOT / 'msg_defs' / 'msg').glob('*.msg'))

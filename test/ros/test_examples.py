@@ -14,7 +14,7 @@ import pytest
 from graphs import NODES, record_lines, write_script
 from source_imports import ROOT
 
-from blocks_planning.ros.domain import Domain
+from blocks_planning.ros.runtime.domain import Domain
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.trials.verify import contradictions

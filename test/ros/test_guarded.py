@@ -16,16 +16,17 @@ from rclpy.action.server import GoalResponse
 from rclpy.parameter import Parameter
 from rclpy.serialization import serialize_message
 
-from blocks_planning.ros import guarded, inbox, subgoal_selector, world
-from blocks_planning.ros.action_searcher import ActionSearcher
-from blocks_planning.ros.bag_recorder import BagRecorder
-from blocks_planning.ros.conversions.fields import MessageError
-from blocks_planning.ros.conversions.trial import spec_to_ros
-from blocks_planning.ros.graph import SUBGOAL_SELECTOR, WORLD
-from blocks_planning.ros.guarded import read_message
-from blocks_planning.ros.inbox import Inbox
-from blocks_planning.ros.topics import ACTION, OUTCOME, STATE, TRIAL
-from blocks_planning.ros.trial_orchestrator import TrialOrchestrator
+from blocks_planning.ros.nodes import subgoal_selector, world
+from blocks_planning.ros.nodes.action_searcher import ActionSearcher
+from blocks_planning.ros.nodes.bag_recorder import BagRecorder
+from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
+from blocks_planning.ros.runtime import guarded, inbox
+from blocks_planning.ros.runtime.guarded import read_message
+from blocks_planning.ros.runtime.inbox import Inbox
+from blocks_planning.ros.wire.conversions.fields import MessageError
+from blocks_planning.ros.wire.conversions.trial import spec_to_ros
+from blocks_planning.ros.wire.graph import SUBGOAL_SELECTOR, WORLD
+from blocks_planning.ros.wire.topics import ACTION, OUTCOME, STATE, TRIAL
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import Message, TrialEnded, TrialStarted, WorldState
 

@@ -11,10 +11,10 @@ from graphs import bring_up, record_lines, run_graph, write_script
 from peers import Bench, Graph, Peer
 from persons import BUILD, WITHDRAWN, Person, human_spec, rows_of
 
-from blocks_planning.ros import subgoal_selector
-from blocks_planning.ros.bags import trials_of
-from blocks_planning.ros.graph import SUBGOAL_SELECTOR
-from blocks_planning.ros.topics import OUTCOME, PROPOSAL, SEARCH_RESULT, STATE, SUBGOAL, TRIAL
+from blocks_planning.ros.bagging.bags import trials_of
+from blocks_planning.ros.nodes import subgoal_selector
+from blocks_planning.ros.wire.graph import SUBGOAL_SELECTOR
+from blocks_planning.ros.wire.topics import OUTCOME, PROPOSAL, SEARCH_RESULT, STATE, SUBGOAL, TRIAL
 from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (

@@ -9,7 +9,7 @@ from disks import disk_of
 
 from blocks_planning.board.blocks import Placed
 from blocks_planning.errors import RecordError
-from blocks_planning.ros.journal import MOST_KEPT, Journal
+from blocks_planning.ros.runtime.journal import MOST_KEPT, Journal
 
 PLACEMENTS = [Placed(2, 1, 0, 0), Placed(1, 16, 15, 0), Placed(4, 2, 3, 14)]
 

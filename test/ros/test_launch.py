@@ -15,7 +15,7 @@ import pytest
 import yaml
 from source_imports import ROOT
 
-from blocks_planning.ros.graph import GRAPH, WATCHER
+from blocks_planning.ros.wire.graph import GRAPH, WATCHER
 
 
 class Said:

@@ -12,9 +12,9 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from visualization_msgs.msg import Marker, MarkerArray
 
-from blocks_planning.ros.graph import MARKER_PUBLISHER
-from blocks_planning.ros.marker_publisher import MarkerPublisher
-from blocks_planning.ros.topics import MARKERS, OUTCOME
+from blocks_planning.ros.nodes.marker_publisher import MarkerPublisher
+from blocks_planning.ros.wire.graph import MARKER_PUBLISHER
+from blocks_planning.ros.wire.topics import MARKERS, OUTCOME
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,

@@ -27,11 +27,15 @@ from source_imports import ROOT
 
 from blocks_planning.board.blocks import Block, Placement
 from blocks_planning.errors import ConfigurationError
-from blocks_planning.ros import subgoal_selector, world
-from blocks_planning.ros.action_searcher import ActionSearcher
-from blocks_planning.ros.bag_recorder import BagRecorder
-from blocks_planning.ros.conversions.trial import spec_to_ros
-from blocks_planning.ros.graph import (
+from blocks_planning.ros.nodes import subgoal_selector, world
+from blocks_planning.ros.nodes.action_searcher import ActionSearcher
+from blocks_planning.ros.nodes.bag_recorder import BagRecorder
+from blocks_planning.ros.nodes.marker_publisher import MarkerPublisher
+from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
+from blocks_planning.ros.nodes.trial_view import TrialView
+from blocks_planning.ros.runtime.journal import Journal
+from blocks_planning.ros.wire.conversions.trial import spec_to_ros
+from blocks_planning.ros.wire.graph import (
     ACTION_SEARCHER,
     GRAPH,
     SUBGOAL_SELECTOR,
@@ -39,9 +43,7 @@ from blocks_planning.ros.graph import (
     WORLD,
     NodeTopics,
 )
-from blocks_planning.ros.journal import Journal
-from blocks_planning.ros.marker_publisher import MarkerPublisher
-from blocks_planning.ros.topics import (
+from blocks_planning.ros.wire.topics import (
     ACTION,
     OUTCOME,
     SEARCH_REQUEST,
@@ -50,8 +52,6 @@ from blocks_planning.ros.topics import (
     TOPICS,
     TRIAL,
 )
-from blocks_planning.ros.trial_orchestrator import TrialOrchestrator
-from blocks_planning.ros.trial_view import TrialView
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
@@ -645,7 +645,7 @@ def test_parameters_are_read_from_the_file_that_ships(tmp_path: Path) -> None:
 
 @each_node
 def test_docstring_names_topics_and_parameters(name: str, make: Callable[..., Any]) -> None:
-    module = importlib.import_module(f'blocks_planning.ros.{name}')
+    module = importlib.import_module(f'blocks_planning.ros.nodes.{name}')
     assert module.__doc__ is not None
     rows = dict(re.findall(r'^\| (\w+) \| (.*) \|$', module.__doc__, re.MULTILINE))
     topics = GRAPH[name]

@@ -26,22 +26,23 @@ from source_imports import ROOT
 
 from blocks_planning.board.blocks import Placed
 from blocks_planning.errors import LimitExceeded
-from blocks_planning.ros import processes, subgoal_selector, world
-from blocks_planning.ros.action_searcher import ActionSearcher
-from blocks_planning.ros.bag_recorder import BagRecorder
-from blocks_planning.ros.conversions.trial import spec_to_ros
-from blocks_planning.ros.diagnostics import TOPIC, Health
-from blocks_planning.ros.graph import GRAPH, TRIAL_ORCHESTRATOR, WORLD
-from blocks_planning.ros.journal import Journal
-from blocks_planning.ros.marker_publisher import MarkerPublisher
-from blocks_planning.ros.part_node import PartNode
-from blocks_planning.ros.peers import Attendance
-from blocks_planning.ros.processes import MOST_DEATHS, STABLE_S, NodeProcess
-from blocks_planning.ros.runtime import stood_still
-from blocks_planning.ros.single import claim_name
-from blocks_planning.ros.topics import OUTCOME, SEARCH_REQUEST, STATE, TRIAL
-from blocks_planning.ros.trial_orchestrator import TrialOrchestrator
-from blocks_planning.ros.trial_view import TrialView
+from blocks_planning.ros.nodes import subgoal_selector, world
+from blocks_planning.ros.nodes.action_searcher import ActionSearcher
+from blocks_planning.ros.nodes.bag_recorder import BagRecorder
+from blocks_planning.ros.nodes.marker_publisher import MarkerPublisher
+from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
+from blocks_planning.ros.nodes.trial_view import TrialView
+from blocks_planning.ros.runtime import processes
+from blocks_planning.ros.runtime.diagnostics import TOPIC, Health
+from blocks_planning.ros.runtime.journal import Journal
+from blocks_planning.ros.runtime.part_node import PartNode
+from blocks_planning.ros.runtime.peers import Attendance
+from blocks_planning.ros.runtime.process import stood_still
+from blocks_planning.ros.runtime.processes import MOST_DEATHS, STABLE_S, NodeProcess
+from blocks_planning.ros.runtime.single import claim_name
+from blocks_planning.ros.wire.conversions.trial import spec_to_ros
+from blocks_planning.ros.wire.graph import GRAPH, TRIAL_ORCHESTRATOR, WORLD
+from blocks_planning.ros.wire.topics import OUTCOME, SEARCH_REQUEST, STATE, TRIAL
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,

@@ -21,12 +21,12 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from blocks_planning.errors import ConfigurationError
-from blocks_planning.ros.conversions.trial import outcome_to_ros
-from blocks_planning.ros.diagnostics import TOPIC as DIAGNOSTICS
-from blocks_planning.ros.graph import TRIAL_VIEW
-from blocks_planning.ros.reserving import ReservedPort
-from blocks_planning.ros.topics import OUTCOME, SEARCH_RESULT, STATE
-from blocks_planning.ros.trial_view import TOKEN_VARIABLE, TrialView
+from blocks_planning.ros.nodes.trial_view import TOKEN_VARIABLE, TrialView
+from blocks_planning.ros.runtime.diagnostics import TOPIC as DIAGNOSTICS
+from blocks_planning.ros.runtime.reserving import ReservedPort
+from blocks_planning.ros.wire.conversions.trial import outcome_to_ros
+from blocks_planning.ros.wire.graph import TRIAL_VIEW
+from blocks_planning.ros.wire.topics import OUTCOME, SEARCH_RESULT, STATE
 from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind
 from blocks_planning.trials.local import run_trial

@@ -29,16 +29,16 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.task import Future
 
 from blocks_planning.errors import InvalidInput, RecordError
-from blocks_planning.ros.conversions.board import state_to_ros
-from blocks_planning.ros.conversions.decisions import subgoal_to_ros
-from blocks_planning.ros.conversions.trial import outcome_to_ros, spec_from_ros
-from blocks_planning.ros.diagnostics import Health
-from blocks_planning.ros.graph import TRIAL_ORCHESTRATOR, VIEWERS
-from blocks_planning.ros.parameters import Parameter
-from blocks_planning.ros.part_node import PartNode
-from blocks_planning.ros.peers import Attendance
-from blocks_planning.ros.runtime import run
-from blocks_planning.ros.topics import OUTCOME
+from blocks_planning.ros.runtime.diagnostics import Health
+from blocks_planning.ros.runtime.parameters import Parameter
+from blocks_planning.ros.runtime.part_node import PartNode
+from blocks_planning.ros.runtime.peers import Attendance
+from blocks_planning.ros.runtime.process import run
+from blocks_planning.ros.wire.conversions.board import state_to_ros
+from blocks_planning.ros.wire.conversions.decisions import subgoal_to_ros
+from blocks_planning.ros.wire.conversions.trial import outcome_to_ros, spec_from_ros
+from blocks_planning.ros.wire.graph import TRIAL_ORCHESTRATOR, VIEWERS
+from blocks_planning.ros.wire.topics import OUTCOME
 from blocks_planning.trials import scribe
 from blocks_planning.trials.messages import (
     CancelTrial,

@@ -24,8 +24,8 @@ from blocks_planning_msgs import msg as ros
 from rclpy.qos import QoSProfile
 from visualization_msgs.msg import MarkerArray
 
-from blocks_planning.ros import qos
-from blocks_planning.ros.conversions import board, decisions, search, trial
+from blocks_planning.ros.wire import qos
+from blocks_planning.ros.wire.conversions import board, decisions, search, trial
 from blocks_planning.trials import messages as core
 
 

@@ -19,13 +19,13 @@ from rclpy.duration import Duration
 from std_msgs.msg import Header
 
 from blocks_planning.errors import ConfigurationError
-from blocks_planning.ros.conversions.markers import markers_to_ros
-from blocks_planning.ros.graph import MARKER_PUBLISHER
-from blocks_planning.ros.parameters import Parameter
-from blocks_planning.ros.part_node import ACKNOWLEDGE_S
-from blocks_planning.ros.runtime import run
-from blocks_planning.ros.topics import MARKERS
-from blocks_planning.ros.watcher import Watcher
+from blocks_planning.ros.runtime.parameters import Parameter
+from blocks_planning.ros.runtime.part_node import ACKNOWLEDGE_S
+from blocks_planning.ros.runtime.process import run
+from blocks_planning.ros.runtime.watcher import Watcher
+from blocks_planning.ros.wire.conversions.markers import markers_to_ros
+from blocks_planning.ros.wire.graph import MARKER_PUBLISHER
+from blocks_planning.ros.wire.topics import MARKERS
 from blocks_planning.view.scene import Scene
 from blocks_planning.view.solids import solids_of
 

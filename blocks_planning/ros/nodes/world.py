@@ -17,12 +17,12 @@ from pathlib import Path
 from typing import Any
 
 from blocks_planning.errors import RecordError
-from blocks_planning.ros.graph import WORLD
-from blocks_planning.ros.guarded import WARN_PERIOD_S
-from blocks_planning.ros.journal import Journal
-from blocks_planning.ros.parameters import Parameter
-from blocks_planning.ros.part_node import PartNode
-from blocks_planning.ros.runtime import run
+from blocks_planning.ros.runtime.guarded import WARN_PERIOD_S
+from blocks_planning.ros.runtime.journal import Journal
+from blocks_planning.ros.runtime.parameters import Parameter
+from blocks_planning.ros.runtime.part_node import PartNode
+from blocks_planning.ros.runtime.process import run
+from blocks_planning.ros.wire.graph import WORLD
 from blocks_planning.trials import world
 from blocks_planning.trials.messages import (
     Message,

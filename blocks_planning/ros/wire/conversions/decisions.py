@@ -7,14 +7,14 @@ import math
 from blocks_planning_msgs import msg as ros
 
 from blocks_planning.board.geometry import Board, Mask
-from blocks_planning.ros.conversions.cells import (
+from blocks_planning.ros.wire.conversions.cells import (
     grid_to_ros,
     mask_on,
     placed_to_ros,
     way_from_ros,
 )
-from blocks_planning.ros.conversions.fields import cost, refuse, word
-from blocks_planning.ros.conversions.search import SOLVE_STATUSES
+from blocks_planning.ros.wire.conversions.fields import cost, refuse, word
+from blocks_planning.ros.wire.conversions.search import SOLVE_STATUSES
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.subgoals.decision import Candidate, Decision, Subgoal
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind

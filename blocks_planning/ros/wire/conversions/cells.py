@@ -10,7 +10,7 @@ from blocks_planning_msgs import msg as ros
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Block, Placed
 from blocks_planning.board.geometry import MAX_SIDE, Board, Mask
-from blocks_planning.ros.conversions.fields import refuse
+from blocks_planning.ros.wire.conversions.fields import refuse
 
 
 def grid_to_ros(board: Board, mask: Mask) -> ros.Grid:

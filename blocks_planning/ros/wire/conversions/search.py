@@ -5,14 +5,14 @@ from __future__ import annotations
 from blocks_planning_msgs import msg as ros
 
 from blocks_planning.board.geometry import Board
-from blocks_planning.ros.conversions.cells import (
+from blocks_planning.ros.wire.conversions.cells import (
     grid_to_ros,
     mask_on,
     placed_from_ros,
     placed_to_ros,
     way_from_ros,
 )
-from blocks_planning.ros.conversions.fields import cost, refuse, word
+from blocks_planning.ros.wire.conversions.fields import cost, refuse, word
 from blocks_planning.search.result import SolveResult, SolveStatus
 from blocks_planning.subgoals.decision import Query
 from blocks_planning.trials.messages import PlanMade, SearchAnswer, SearchRequest

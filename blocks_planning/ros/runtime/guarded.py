@@ -14,8 +14,8 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 
-from blocks_planning.ros.conversions.fields import MessageError, refuse
-from blocks_planning.ros.topics import Topic, ViewTopic
+from blocks_planning.ros.wire.conversions.fields import MessageError, refuse
+from blocks_planning.ros.wire.topics import Topic, ViewTopic
 
 MOST_BYTES = 8 << 20
 """Four times what the largest board and planner can have to say."""

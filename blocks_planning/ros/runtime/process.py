@@ -35,8 +35,8 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from blocks_planning.errors import BlocksPlanningError, ConfigurationError
-from blocks_planning.ros.processes import PARENT_VARIABLE
-from blocks_planning.ros.single import claim_name
+from blocks_planning.ros.runtime.processes import PARENT_VARIABLE
+from blocks_planning.ros.runtime.single import claim_name
 
 EXIT_BOUND_S = float(os.environ.get('BLOCKS_PLANNING_EXIT_BOUND_S', '0.9'))
 _SPIN_S = 0.1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from blocks_planning.ros.topics import (
+from blocks_planning.ros.wire.topics import (
     ACTION,
     ACTION_OUTCOME,
     MARKERS,

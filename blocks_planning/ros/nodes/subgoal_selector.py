@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from blocks_planning.ros.graph import SUBGOAL_SELECTOR
-from blocks_planning.ros.part_node import PartNode
-from blocks_planning.ros.runtime import run
+from blocks_planning.ros.runtime.part_node import PartNode
+from blocks_planning.ros.runtime.process import run
+from blocks_planning.ros.wire.graph import SUBGOAL_SELECTOR
 from blocks_planning.trials import selector
 from blocks_planning.trials.messages import Message, ProposalMade
 

@@ -6,13 +6,13 @@ from blocks_planning_msgs import msg as ros
 
 from blocks_planning.board.task import Task
 from blocks_planning.errors import InvalidInput
-from blocks_planning.ros.conversions.cells import (
+from blocks_planning.ros.wire.conversions.cells import (
     block_from_ros,
     grid_from_ros,
     grid_to_ros,
     placed_to_ros,
 )
-from blocks_planning.ros.conversions.fields import MessageError, refuse, word
+from blocks_planning.ros.wire.conversions.fields import MessageError, refuse, word
 from blocks_planning.search.searches import SEARCHES, make_search
 from blocks_planning.settings import setting_names, settings_of
 from blocks_planning.subgoals.registry import STRATEGIES, make_strategy

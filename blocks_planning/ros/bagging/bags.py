@@ -21,11 +21,11 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.errors import InvalidInput, shown
 from blocks_planning.ros.bagging import BagError
 from blocks_planning.ros.bagging.repair import file_begins, is_finished, repair
-from blocks_planning.ros.conversions.board import state_from_ros
-from blocks_planning.ros.conversions.cells import placed_from_ros
-from blocks_planning.ros.conversions.decisions import subgoal_from_ros
-from blocks_planning.ros.conversions.trial import ended_from_ros, started_from_ros
-from blocks_planning.ros.inbox import Inbox
+from blocks_planning.ros.runtime.inbox import Inbox
+from blocks_planning.ros.wire.conversions.board import state_from_ros
+from blocks_planning.ros.wire.conversions.cells import placed_from_ros
+from blocks_planning.ros.wire.conversions.decisions import subgoal_from_ros
+from blocks_planning.ros.wire.conversions.trial import ended_from_ros, started_from_ros
 from blocks_planning.trials import scribe, verify
 from blocks_planning.trials.consistency import Consistency
 from blocks_planning.trials.messages import Message, TrialStarted

@@ -6,7 +6,7 @@ from blocks_planning_msgs import msg as ros
 
 from blocks_planning.board.blocks import Placement
 from blocks_planning.board.geometry import Board
-from blocks_planning.ros.conversions.cells import (
+from blocks_planning.ros.wire.conversions.cells import (
     block_from_ros,
     grid_to_ros,
     mask_on,
@@ -14,7 +14,7 @@ from blocks_planning.ros.conversions.cells import (
     placed_to_ros,
     way_from_ros,
 )
-from blocks_planning.ros.conversions.fields import refuse, word
+from blocks_planning.ros.wire.conversions.fields import refuse, word
 from blocks_planning.trials.messages import PlaceBlock, PlacementOutcome, WorldState
 from blocks_planning.trials.status import TrialStatus
 

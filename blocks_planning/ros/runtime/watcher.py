@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from blocks_planning.ros.graph import WATCHER, NodeTopics
-from blocks_planning.ros.parameters import Parameter
-from blocks_planning.ros.part_node import PartNode
+from blocks_planning.ros.runtime.parameters import Parameter
+from blocks_planning.ros.runtime.part_node import PartNode
+from blocks_planning.ros.wire.graph import WATCHER, NodeTopics
 from blocks_planning.trials.messages import Message, TrialStarted
 from blocks_planning.view.scene import Scene, scene_after
 

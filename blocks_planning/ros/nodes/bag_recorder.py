@@ -22,13 +22,13 @@ from rclpy.qos import QoSProfile
 from blocks_planning.ros.bagging.definitions import definition_of, type_hash_of
 from blocks_planning.ros.bagging.metadata import RecordedTopic, to_yaml
 from blocks_planning.ros.bagging.writer import BagWriter
-from blocks_planning.ros.diagnostics import Diagnostics, Health
-from blocks_planning.ros.graph import BAG_RECORDER
-from blocks_planning.ros.guarded import GuardedNode
-from blocks_planning.ros.parameters import Parameter, declare
-from blocks_planning.ros.peers import Peers
-from blocks_planning.ros.runtime import run
-from blocks_planning.ros.topics import VIEW_TOPICS, Topic, ViewTopic
+from blocks_planning.ros.runtime.diagnostics import Diagnostics, Health
+from blocks_planning.ros.runtime.guarded import GuardedNode
+from blocks_planning.ros.runtime.parameters import Parameter, declare
+from blocks_planning.ros.runtime.peers import Peers
+from blocks_planning.ros.runtime.process import run
+from blocks_planning.ros.wire.graph import BAG_RECORDER
+from blocks_planning.ros.wire.topics import VIEW_TOPICS, Topic, ViewTopic
 
 BAG_DIR = Parameter('bag_dir', 'bag', 'Folder of the bag: a new one, or of a bag cut off.')
 FLUSH_PERIOD = Parameter(

@@ -11,13 +11,13 @@ from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import InvalidInput
-from blocks_planning.ros.diagnostics import Diagnostics, Health
-from blocks_planning.ros.graph import NodeTopics
-from blocks_planning.ros.guarded import GuardedNode, read_message
-from blocks_planning.ros.inbox import Inbox
-from blocks_planning.ros.parameters import Parameter, declare
-from blocks_planning.ros.peers import Peers
-from blocks_planning.ros.topics import TRIAL, Topic
+from blocks_planning.ros.runtime.diagnostics import Diagnostics, Health
+from blocks_planning.ros.runtime.guarded import GuardedNode, read_message
+from blocks_planning.ros.runtime.inbox import Inbox
+from blocks_planning.ros.runtime.parameters import Parameter, declare
+from blocks_planning.ros.runtime.peers import Peers
+from blocks_planning.ros.wire.graph import NodeTopics
+from blocks_planning.ros.wire.topics import TRIAL, Topic
 from blocks_planning.trials.consistency import Consistency
 from blocks_planning.trials.messages import Message, Remind, TrialEnded, TrialStarted
 from blocks_planning.trials.spec import TrialSpec

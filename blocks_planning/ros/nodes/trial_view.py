@@ -25,15 +25,15 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticArray
 
 from blocks_planning.errors import InvalidInput
-from blocks_planning.ros import qos
-from blocks_planning.ros.diagnostics import TOPIC as DIAGNOSTICS
-from blocks_planning.ros.graph import TRIAL_VIEW
-from blocks_planning.ros.guarded import read_message
-from blocks_planning.ros.parameters import Parameter
-from blocks_planning.ros.part_node import PartNode
-from blocks_planning.ros.processes import PARENT_VARIABLE
-from blocks_planning.ros.runtime import run
-from blocks_planning.ros.topics import SEARCH_RESULT, Topic
+from blocks_planning.ros.runtime.diagnostics import TOPIC as DIAGNOSTICS
+from blocks_planning.ros.runtime.guarded import read_message
+from blocks_planning.ros.runtime.parameters import Parameter
+from blocks_planning.ros.runtime.part_node import PartNode
+from blocks_planning.ros.runtime.process import run
+from blocks_planning.ros.runtime.processes import PARENT_VARIABLE
+from blocks_planning.ros.wire import qos
+from blocks_planning.ros.wire.graph import TRIAL_VIEW
+from blocks_planning.ros.wire.topics import SEARCH_RESULT, Topic
 from blocks_planning.subgoals.human import Human
 from blocks_planning.trials.messages import Message
 from blocks_planning.trials.script import read_script

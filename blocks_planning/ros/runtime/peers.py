@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 from rclpy.node import Node
 
-from blocks_planning.ros.graph import GRAPH, NodeTopics
-from blocks_planning.ros.topics import PROPOSAL, TOPICS, VIEW_TOPICS, Topic, ViewTopic
+from blocks_planning.ros.wire.graph import GRAPH, NodeTopics
+from blocks_planning.ros.wire.topics import PROPOSAL, TOPICS, VIEW_TOPICS, Topic, ViewTopic
 
 _UNKNOWN = '_NODE_NAME_UNKNOWN_'
 _MOST_NAMES = 10_000

@@ -17,10 +17,10 @@ from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-from blocks_planning.ros.graph import ACTION_SEARCHER
-from blocks_planning.ros.parameters import Parameter
-from blocks_planning.ros.part_node import PartNode
-from blocks_planning.ros.runtime import run
+from blocks_planning.ros.runtime.parameters import Parameter
+from blocks_planning.ros.runtime.part_node import PartNode
+from blocks_planning.ros.runtime.process import run
+from blocks_planning.ros.wire.graph import ACTION_SEARCHER
 from blocks_planning.search.compiled import warm_up
 from blocks_planning.search.result import CancelToken, Problem, SolveStatus
 from blocks_planning.search.solve import solve

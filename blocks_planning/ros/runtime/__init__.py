@@ -1,0 +1,1 @@
+"""What every node process needs: start and stop, peers, parameters, diagnostics, bring-up."""
