@@ -14,7 +14,7 @@ from blocks_planning.search.result import DEFAULT_BUDGET, CancelToken
 from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.registry import make_strategy
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import Message
+from blocks_planning.trials.messages import Message, TrialEnded
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 
@@ -125,6 +125,11 @@ def remade(data: dict[str, Any]) -> dict[str, Any]:
     )
     data['trial_id'] = hashlib.blake2b(known_before.encode(), digest_size=8).hexdigest()
     return data
+
+
+def ended(trial_id: str, record: TrialRecord) -> TrialEnded:
+    """The end of a trial, as the scribe says it."""
+    return TrialEnded(trial_id, record.status, record.reason, record)
 
 
 def cancelled_record(trial: TrialSpec, messages: int) -> TrialRecord:

@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 import yaml
 from blocks_planning_msgs.action import RunTrial
-from builders import CHAIR, EMPTY, NEVER_SOLVED, spec
+from builders import CHAIR, EMPTY, NEVER_SOLVED, ended, spec
 from graphs import NODES
 from peers import Bench, Graph, Peer
 from rclpy.action.client import ActionClient, GoalStatus
@@ -52,13 +52,13 @@ from blocks_planning.ros.wire.topics import (
     TOPICS,
     TRIAL,
 )
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
     PlaceBlock,
     SearchAnswer,
     SearchRequest,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
@@ -73,7 +73,11 @@ LONG = spec('/'.join(['#' * 16] * 16), strategy='none', depth=12, budget=10**15)
 HEARD: list[Message] = []
 RECORD = run_trial(TRIAL_SPEC, observe=HEARD.append)
 KINDS = {topic.kind: topic for topic in TOPICS}
-FIRST_ASKED = [m for m in HEARD if isinstance(m, SearchRequest) and m.query.built == 0]
+FIRST_ASKED = [
+    m
+    for m in HEARD
+    if isinstance(m, SearchRequest) and all(query.built == 0 for query in m.queries)
+]
 PARTS: list[tuple[NodeTopics, Callable[..., Any]]] = [
     (WORLD, world.make_node),
     (SUBGOAL_SELECTOR, subgoal_selector.make_node),
@@ -167,7 +171,7 @@ def test_is_done_when_the_trial_is_over(
     on = bench(graph, topics, make_node)
     heard = for_node(topics)
     on.tell(*heard[: len(heard) // 2])
-    outcome = OUTCOME.to_ros(TRIAL_SPEC.trial_id, RECORD)
+    outcome = OUTCOME.to_ros(None, ended(TRIAL_SPEC.trial_id, RECORD))
     on.peer.outlets[OUTCOME].publish(outcome)
     on.fence(OUTCOME)
     memory, said = on.node.memory, list(on.peer.heard)
@@ -386,7 +390,7 @@ def test_orchestrator_refuses_goals_that_can_not_be(graph: Graph, tmp_path: Path
     for change in (
         lambda trial: setattr(trial.silhouette, 'width', 0),
         lambda trial: setattr(trial.planner, 'strategy', 'luck'),
-        lambda trial: setattr(trial.planner, 'lambda_weight', float('nan')),
+        lambda trial: setattr(trial.planner.strategy_settings[0], 'double_value', float('nan')),
         lambda trial: setattr(trial, 'library', []),
     ):
         trial = deepcopy(good)

@@ -34,7 +34,6 @@ from blocks_planning.ros.runtime.processes import PARENT_VARIABLE
 from blocks_planning.ros.wire import qos
 from blocks_planning.ros.wire.graph import TRIAL_VIEW
 from blocks_planning.ros.wire.topics import SEARCH_RESULT, Topic
-from blocks_planning.subgoals.human import Human
 from blocks_planning.trials.messages import Message
 from blocks_planning.trials.script import read_script
 from blocks_planning.trials.spec import TrialSpec
@@ -180,7 +179,7 @@ class TrialView(PartNode):
 
 
 def _is_persons(spec: TrialSpec) -> bool:
-    return isinstance(spec.strategy, Human)
+    return spec.strategy.asks_person
 
 
 def stand_back() -> None:
