@@ -117,7 +117,7 @@ def _shares_of_sizes(trials: pd.DataFrame, decisions: pd.DataFrame) -> pd.DataFr
     """Share of the executed subgoals by the rows they add: index lambda, columns 1 to highest."""
     scoping = trials.loc[trials['strategy'] == 'scoping', ['trial_id', 'lambda']]
     chosen = decisions.merge(scoping, on='trial_id').query('executed > 0')
-    chosen = chosen.assign(top=chosen['rows'].map(lambda rows: rows[-1]).astype(int))
+    chosen = chosen.assign(top=chosen['tops'].map(lambda tops: tops[-1]).astype(int))
     chosen = chosen.sort_values(['trial_id', 'decision'])
     before = chosen.groupby('trial_id', observed=True)['top'].shift(fill_value=0)
     sizes = pd.crosstab(chosen['lambda'], chosen['top'] - before, normalize='index')

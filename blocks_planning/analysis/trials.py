@@ -45,7 +45,7 @@ def read_trials(folder: Path) -> pd.DataFrame:
 
 def read_decisions(folder: Path) -> pd.DataFrame:
     """The table of decisions of a finished sweep: the columns that figures need."""
-    columns = ['trial_id', 'decision', 'rows', 'executed']
+    columns = ['trial_id', 'decision', 'tops', 'executed']
     return pd.read_parquet(folder / 'decisions.parquet', columns=columns)
 
 

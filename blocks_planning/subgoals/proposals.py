@@ -62,6 +62,11 @@ def target_of(task: Task, built: Mask, region: Mask) -> Mask:
     return built | (region & task.silhouette)
 
 
+def is_filled(task: Task, built: Mask, region: Mask) -> bool:
+    """Whether no target cell of a drawn region is still empty."""
+    return target_of(task, built, region) == built
+
+
 def proposed_at(proposals: Iterable[Proposal], sequence: int) -> tuple[Proposal, ...]:
     """The proposals that were made in the state of an observation."""
     return tuple(proposal for proposal in proposals if proposal.sequence == sequence)
@@ -74,7 +79,7 @@ def decisive(task: Task, built: Mask, proposals: Iterable[Proposal]) -> Iterator
             case ProposalKind.GIVE_UP:
                 yield proposal
                 return
-            case ProposalKind.BUILD if target_of(task, built, proposal.region) != built:
+            case ProposalKind.BUILD if not is_filled(task, built, proposal.region):
                 yield proposal
 
 
@@ -90,7 +95,6 @@ def out_of_turn(taken: Sequence[Proposal], proposal: Proposal) -> str:
 
 def asks_nothing(task: Task, built: Mask, proposal: Proposal) -> str:
     """Why a proposal has no effect in a state; '' if it has one, or is withdrawn."""
-    is_filled = target_of(task, built, proposal.region) == built
-    if proposal.kind is ProposalKind.BUILD and is_filled:
+    if proposal.kind is ProposalKind.BUILD and is_filled(task, built, proposal.region):
         return 'region: expected a target cell that is still empty'
     return ''

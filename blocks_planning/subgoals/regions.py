@@ -20,6 +20,8 @@ class Label(NamedTuple):
 
     >>> str(Label('rows', (4,)))
     'rows 4'
+    >>> str(Label('rectangle', (0, 2, 3, 1)))
+    'rectangle 0,2,3,1'
     >>> str(Label('drawn'))
     'drawn'
     """
@@ -28,7 +30,7 @@ class Label(NamedTuple):
     numbers: tuple[int, ...] = ()
 
     def __str__(self) -> str:
-        return ' '.join([self.kind, *map(str, self.numbers)])
+        return ' '.join([self.kind, *filter(None, [','.join(map(str, self.numbers))])])
 
 
 class Region(NamedTuple):

@@ -12,9 +12,10 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from blocks_planning.subgoals.human import Human
+from blocks_planning.settings import settings_of
 from blocks_planning.subgoals.proposals import ProposalKind
 from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.spec import FAMILIES, TrialSpec
 from blocks_planning.trials.status import TrialStatus
 
 _COLUMNS = ('blocks', 'subgoals', 'action cost', 'subgoal cost', 'solution cost')
@@ -63,12 +64,12 @@ def print_summary(records: Sequence[TrialRecord], console: Console | None = None
 
 
 def print_proposals(records: Sequence[TrialRecord], console: Console | None = None) -> None:
-    """Print what a person did in each trial in which one scoped; nothing if there is none.
+    """Print the proposals of each trial in which a person scoped; nothing if there is none.
 
-    Thinking is what passed before each proposal, also before those that were withdrawn [s].
+    Thinking time is the time before each proposal, withdrawn ones included [s].
     """
     table = Table(
-        title='What was proposed; thinking in seconds, in all and each time',
+        title='Proposals; thinking time in seconds, total and mean',
         title_justify='left',
         title_style='',
         box=box.SIMPLE_HEAD,
@@ -79,16 +80,16 @@ def print_proposals(records: Sequence[TrialRecord], console: Console | None = No
     for title in ('proposed', 'built', 'withdrawn', 'thinking', 'each'):
         table.add_column(title, justify='right', no_wrap=True)
     for record in records:
-        strategy = record.spec.strategy
-        if isinstance(strategy, Human):
-            row = [strategy.participant, record.spec.stimulus, *_proposed(record)]
+        if record.spec.strategy.asks_person:
+            participant = str(settings_of(record.spec.strategy).get('participant', ''))
+            row = [participant, record.spec.stimulus, *_proposed(record)]
             table.add_row(*map(Text, row))
     if table.row_count:
         (console or Console()).print(table)
 
 
 def _proposed(record: TrialRecord) -> list[str]:
-    """How many regions were to be built, were built, were let go; and how long that took."""
+    """Counts of regions proposed, built and withdrawn; and the thinking time."""
     kinds = [proposal.kind for proposal in record.proposals]
     seconds = [proposal.thinking_s for proposal in record.proposals]
     return [
@@ -101,12 +102,14 @@ def _proposed(record: TrialRecord) -> list[str]:
 
 
 def _planner(record: TrialRecord) -> str:
-    """Who planned, with all settings."""
-    spec = record.spec.to_json()
-    keys = ('strategy', 'lambda', 'commit', 'search')
-    planner = ', '.join(f'{key} {spec[key]}' for key in keys if spec[key] is not None)
-    settings = ', '.join(f'{key} {value}' for key, value in spec['search_settings'].items())
-    return f'{planner} ({settings})' if settings else planner
+    """Strategy, search and world with all their settings."""
+    return ', '.join(_member(name, record.spec) for name in FAMILIES)
+
+
+def _member(family: str, spec: TrialSpec) -> str:
+    chosen = getattr(spec, family)
+    values = ', '.join(f'{key} {value}' for key, value in settings_of(chosen).items())
+    return f'{family} {chosen.name}' + (f' ({values})' if values else '')
 
 
 def _row(group: list[TrialRecord], single: bool) -> list[str]:

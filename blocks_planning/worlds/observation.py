@@ -15,6 +15,9 @@ from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placed, Placement
 from blocks_planning.board.geometry import Board, Mask
 
+MAX_OBSERVATIONS = 4096
+"""Most observations of a trial, the first included; a trial that would need more is ended."""
+
 Blocks = tuple[Placed, ...]
 """The blocks that stand, in the order in which they landed."""
 
