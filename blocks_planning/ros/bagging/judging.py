@@ -112,6 +112,8 @@ def begun(record: TrialRecord) -> TrialRecord:
     for span in spans_of(record):
         executed[span.decision] = span.subgoal + 1
         last = span.progress.sequence
+        if span.progress.is_open:  # what was begun after it is not seen yet
+            break
     return _cut(record, executed, last, '')
 
 

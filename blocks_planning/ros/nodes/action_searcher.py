@@ -8,7 +8,7 @@ the node has joined the graph; searches wait for it.
 |---|---|
 | listens | `trial`, `state`, `subgoal`, `outcome` (latched), `search/request` (stream) |
 | says | `search/result`, `action` (stream), `plan` (latched) |
-| parameters | `remind_period_s`, `frame_id`; `workers`: searches at once |
+| parameters | `remind_period_s`; `frame_id`; `workers`: searches at once |
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ they are published, those between are never seen.
 |---|---|
 | listens | `trial`, `state`, `subgoal`, `outcome` (latched) |
 | says | `markers` (latched) |
-| parameters | `remind_period_s`, `frame_id`; `cell_size`: side of a cell in metres; `publish_period_s`: longest time until a change is shown |
+| parameters | `remind_period_s`; `frame_id`; `cell_size`: side of a cell in metres; `publish_period_s`: longest time until a change is shown |
 """
 
 from __future__ import annotations

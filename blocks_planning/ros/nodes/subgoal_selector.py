@@ -4,7 +4,7 @@
 |---|---|
 | listens | `trial`, `state`, `subgoal/proposal`, `outcome` (latched), `search/result` (stream) |
 | says | `search/request` (stream), `subgoal` (latched) |
-| parameters | `remind_period_s`, `frame_id` |
+| parameters | `remind_period_s`; `frame_id` |
 """
 
 from __future__ import annotations

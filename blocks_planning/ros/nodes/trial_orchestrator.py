@@ -12,7 +12,7 @@ it goes on with that trial.
 | listens | `state`, `subgoal` (latched), `action/outcome` (stream) |
 | says | `trial`, `outcome` (latched) |
 | action | `run_trial`: feedback with every state and subgoal; cancelling ends the trial |
-| parameters | `remind_period_s`, `frame_id`; `script`; `participant`: code of the person who scopes; `out_dir`: where `trials.jsonl` is; `wait_for`: nodes that must be present; `peer_timeout_s`: how long it waits for them, before a trial and during it |
+| parameters | `remind_period_s`; `frame_id`; `script`; `participant`: code of the person who scopes; `out_dir`: where `trials.jsonl` is; `wait_for`: nodes that must be present; `peer_timeout_s`: how long it waits for them, before a trial and during it |
 """
 
 from __future__ import annotations

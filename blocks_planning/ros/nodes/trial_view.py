@@ -9,7 +9,7 @@ by what this node knows, and said if it can be taken.
 | listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched) |
 | says | `subgoal/proposal` (latched) |
 | hears too | `/diagnostics` of the nodes in its namespace; `search/result`, unless no trial of its script is a person's: answers are many |
-| parameters | `remind_period_s`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none; `participant`: code of the person of its trials, '': as the script says |
+| parameters | `remind_period_s`; `frame_id`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none; `participant`: code of the person of its trials, '': as the script says |
 """
 
 from __future__ import annotations

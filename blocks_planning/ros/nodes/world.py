@@ -9,7 +9,7 @@ why.
 |---|---|
 | listens | `trial`, `outcome` (latched), `action` (stream) |
 | says | `state` (latched), `action/outcome` (stream) |
-| parameters | `remind_period_s`, `frame_id`; `journal_dir`: folder of the journal; `placing_s`: how long placing a block takes |
+| parameters | `remind_period_s`; `frame_id`; `journal_dir`: folder of the journal; `placing_s`: how long placing a block takes |
 """
 
 from __future__ import annotations

@@ -102,7 +102,6 @@ class PartNode(GuardedNode):
         self.topics = topics
         self.peers = Peers(self)
         self._diagnostics = Diagnostics(self, self.health)
-        self.get_logger().info('ready')
 
     def listen(self, topic: Topic) -> None:
         """Subscribe to a topic."""
