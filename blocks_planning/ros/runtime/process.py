@@ -29,7 +29,8 @@ import rclpy
 import rclpy.utilities
 from rclpy.context import Context
 from rclpy.exceptions import NameValidationException, ParameterException
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import Executor
+from rclpy.experimental import EventsExecutor
 from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -81,7 +82,7 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         sys.stderr.write(f'Error: {" ".join(str(error).split())}\n')
         _leave(BAD_INPUT)
     failures: list[BaseException] = []
-    executor = SingleThreadedExecutor()
+    executor = EventsExecutor()  # the others make their set of things to wait for anew each time
     executor.add_node(node)
     spinning = threading.Thread(
         target=_spin,
@@ -200,7 +201,7 @@ def _begin_anew() -> NoReturn:
 
 
 def _spin(
-    executor: SingleThreadedExecutor,
+    executor: Executor,
     stop: threading.Event,
     failures: list[BaseException],
     drain_s: float,
