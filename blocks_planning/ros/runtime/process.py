@@ -36,7 +36,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from blocks_planning.errors import BlocksPlanningError, ConfigurationError
-from blocks_planning.ros.runtime.processes import PARENT_VARIABLE
+from blocks_planning.ros.runtime.processes import PARENT_VARIABLE, tell_ready
 from blocks_planning.ros.runtime.single import claim_name
 
 EXIT_BOUND_S = float(os.environ.get('BLOCKS_PLANNING_EXIT_BOUND_S', '0.9'))
@@ -78,6 +78,7 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         made.append(node.get_fully_qualified_name())
         claim = claim_name(node.context.get_domain_id(), node.get_fully_qualified_name())
         node.get_logger().info('ready')
+        tell_ready()
     except (BlocksPlanningError, ParameterException, NameValidationException) as error:
         sys.stderr.write(f'Error: {" ".join(str(error).split())}\n')
         _leave(BAD_INPUT)
