@@ -112,19 +112,50 @@ def remade(data: dict[str, Any]) -> dict[str, Any]:
     begun = [
         part for entry in data['decisions'] for part in entry['subgoals'][: entry['executed']]
     ]
-    data['blocks'] = len(data['placements'])
+    standing: list[Any] = []
+    for seen in data['observations']:
+        standing = [block for block in standing if block not in seen['gone']] + seen['landed']
+    data['placements'] = standing
+    data['blocks'] = len(standing)
+    data['orders'] = sum(seen['ordered'] is not None for seen in data['observations'])
+    data['surprises'] = sum(
+        seen['ordered'] is None
+        or bool(seen['gone'])
+        or [[*block[:3]] for block in seen['landed']] != [seen['ordered']]
+        for seen in data['observations'][1:]
+    )
+    data |= _measures(data)
     data['subgoals'] = sum(entry['executed'] for entry in data['decisions'])
     data['action_planning_cost'] = sum(part['planning_cost'] for part in begun)
     data['solution_cost'] = sum(part['solution_cost'] for part in begun)
     data['subgoal_planning_cost'] = sum(
         entry['subgoal_planning_cost'] for entry in data['decisions']
     )
-    own = [key for key in ('participant', 'costs') if key in data]
-    known_before = json.dumps(
-        {key: data[key] for key in [*spec().to_json(), *own]}, sort_keys=True
-    )
+    known_before = json.dumps({key: data[key] for key in spec().to_json()}, sort_keys=True)
     data['trial_id'] = hashlib.blake2b(known_before.encode(), digest_size=8).hexdigest()
     return data
+
+
+def _measures(data: dict[str, Any]) -> dict[str, float]:
+    rows = data['silhouette'][::-1]
+    target = {(c, r) for r, row in enumerate(rows) for c, sign in enumerate(row) if sign == '#'}
+    filled = {
+        (c, r)
+        for width, height, column, row in data['placements']
+        for c in range(column, column + width)
+        for r in range(row, row + height)
+    }
+    both = len(target & filled)
+
+    def ratio(part: int, whole: int) -> float:
+        return part / whole if whole else 1.0
+
+    return {
+        'recall': ratio(both, len(target)),
+        'precision': ratio(both, len(filled)),
+        'f1': ratio(2 * both, len(filled) + len(target)),
+        'iou': ratio(both, len(filled | target)),
+    }
 
 
 def cancelled_record(trial: TrialSpec, messages: int) -> TrialRecord:

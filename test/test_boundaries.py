@@ -2,7 +2,7 @@
 
 ::
 
-    cli  ->  ros  ->  view | experiments | analysis  ->  trials  ->  subgoals  ->  search
+    cli  ->  ros  ->  view | experiments | analysis  ->  trials  ->  worlds  ->  subgoals  ->  search
          ->  board  ->  families  ->  located | resources | settings  ->  errors
 """
 
@@ -20,6 +20,7 @@ LAYERS = [
     {'board'},
     {'search'},
     {'subgoals'},
+    {'worlds'},
     {'trials'},
     {'view', 'experiments', 'analysis'},
     {'ros'},

@@ -152,6 +152,16 @@ class Strategy(Protocol):
         """The chains of a decision's candidates, in order. Asks nothing of ``known``."""
         ...
 
+    def sequences(self, situation: Situation) -> int:
+        """Number of chains that exist; more than :meth:`chains` lists if those are a sample."""
+        ...
+
+    def rated(
+        self, candidates: Sequence[Candidate], situation: Situation
+    ) -> tuple[Candidate, ...]:
+        """The candidates with the probabilities of being chosen, if the choice is by those."""
+        ...
+
     def value(self, cells: int, planning_cost: int) -> float | None:
         """V of a solved chain [cells]; None if values play no part."""
         ...

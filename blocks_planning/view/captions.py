@@ -144,6 +144,7 @@ def numbers_of(candidate: Candidate) -> list[str]:
 def regions_of(candidate: Candidate, width: int, signs: Signs = palette.UNICODE) -> str:
     """The labels of a candidate's regions in at most ``width`` characters, the last left out.
 
+    >>> from blocks_planning.subgoals.regions import Label
     >>> rows = [Region(Label('rows', (height,)), 0) for height in (1, 3, 8)]
     >>> regions_of(Candidate(tuple(rows), 9, 9, None, SolveStatus.SOLVED), width=10)
     'rows 1 3 8'
@@ -159,6 +160,7 @@ def regions_of(candidate: Candidate, width: int, signs: Signs = palette.UNICODE)
 def chain_text(regions: Iterable[Region]) -> str:
     """The labels of regions; a kind is named once for several regions in a row.
 
+    >>> from blocks_planning.subgoals.regions import Label
     >>> chain_text([Region(Label('rows', (2,)), 0), Region(Label('rectangle', (0, 2, 3, 1)), 0)])
     'rows 2 rectangle 0,2,3,1'
     """

@@ -81,7 +81,8 @@ def test_order_is_strategies_searches_stimuli_seeds(tmp_path: Path) -> None:
     found = []
     for trial in trials:
         said = trial.to_json()
-        strategy = (said['strategy'], said['lambda'], said['commit'])
+        settings = said['strategy_settings']
+        strategy = (said['strategy'], settings.get('lambda'), settings.get('commit'))
         search = (said['search'], said['search_settings'])
         found.append((strategy, search, said['stimulus'], said['seed'], said['budget']))
     assert found == expected
