@@ -7,16 +7,18 @@ import json
 from itertools import product
 from typing import Any
 
-from blocks_planning.board.blocks import PAPER_LIBRARY, format_library, parse_library
+from blocks_planning.board.blocks import PAPER_LIBRARY, Placed, format_library, parse_library
 from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.board.task import Task
 from blocks_planning.search.result import DEFAULT_BUDGET, CancelToken
 from blocks_planning.search.searches import make_search
+from blocks_planning.subgoals.regions import Region, rows_label
 from blocks_planning.subgoals.registry import make_strategy
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import Message
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.worlds.observation import Observation, Observations
 
 # Towers for the paper's library, top row first.
 SQUARE = '####/####/####/####'
@@ -50,6 +52,17 @@ _SEARCHES: list[Settings] = [
 ]
 PLANNERS = [{**strategy, **search} for strategy, search in product(_STRATEGIES, _SEARCHES)]
 """Settings for :func:`spec`: every strategy with every search."""
+
+
+def row_regions(*heights: int) -> tuple[Region, ...]:
+    """Regions that are rows, without their cells."""
+    return tuple(Region(rows_label(height), 0) for height in heights)
+
+
+def as_ordered(*placements: Placed) -> Observations:
+    """The observations of a trial in which these placements were ordered and carried out."""
+    made = (Observation(placed.placement, (placed,)) for placed in placements)
+    return (Observation(), *made)
 
 
 def planner_id(settings: dict[str, Any]) -> str:

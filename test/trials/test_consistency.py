@@ -164,6 +164,6 @@ def test_answer_of_strange_blocks_or_costs_is_refused() -> None:
 def test_request_for_cells_that_are_not_to_be_filled_is_refused() -> None:
     full = TRIAL.task.board.full
     after(SearchRequest(TRIAL.trial_id, (Query(0, TRIAL.task.silhouette),)))
-    with pytest.raises(Contradiction, match='region'):
+    with pytest.raises(Contradiction, match='queries'):
         after(SearchRequest(TRIAL.trial_id, (Query(0, full),)))
     after(SearchRequest(TRIAL.trial_id, (Query(full, full),)))

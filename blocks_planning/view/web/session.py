@@ -32,7 +32,7 @@ from blocks_planning.trials.messages import (
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view.captions import shortlist
-from blocks_planning.view.scene import Scene, scene_after
+from blocks_planning.view.scene import Scene, first_scene, scene_after
 from blocks_planning.worlds.observation import states_of
 
 MOST_PAST = 500
@@ -110,7 +110,7 @@ def session_after(session: Session, message: Message) -> Session:
     scene = session.scene
     if scene is None or message.trial_id != scene.trial.trial_id:
         if isinstance(message, TrialStarted):
-            return Session(Scene(message), past=_closed(session).past)
+            return Session(first_scene(message), past=_closed(session).past)
         return replace(session, past=_past_after(session.past, message))
     match message:
         case SearchAnswer():

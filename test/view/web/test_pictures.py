@@ -76,7 +76,8 @@ def test_replay_has_every_scene(name: str, request: pytest.FixtureRequest) -> No
     assert len(replay['steps']) == len(scenes)
     assert len(replay['all_blocks']) == trial.record.blocks
     for step, scene in zip(replay['steps'], scenes, strict=True):
-        assert step['blocks'] == len(scene.placements)
+        assert step['sequence'] == len(scene.placements)
+        assert step['standing'] == list(range(len(scene.placements)))
         region = 0 if step['region'] is None else board.parse(step['region'])
         assert region == scene.region
         planned = board.mask(
