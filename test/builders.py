@@ -15,7 +15,7 @@ from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.regions import Region, rows_label
 from blocks_planning.subgoals.registry import make_strategy
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import Message
+from blocks_planning.trials.messages import Message, TrialEnded
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.worlds.observation import Observation, Observations
@@ -169,6 +169,11 @@ def _measures(data: dict[str, Any]) -> dict[str, float]:
         'f1': ratio(2 * both, len(filled) + len(target)),
         'iou': ratio(both, len(filled | target)),
     }
+
+
+def ended(trial_id: str, record: TrialRecord) -> TrialEnded:
+    """The end of a trial, as the scribe says it."""
+    return TrialEnded(trial_id, record.status, record.reason, record)
 
 
 def cancelled_record(trial: TrialSpec, messages: int) -> TrialRecord:

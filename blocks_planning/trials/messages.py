@@ -15,6 +15,7 @@ of another trial. :mod:`.local` carries the messages inside one process.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import TypeAlias
 
 from blocks_planning.board.blocks import Placed, Placement
@@ -122,18 +123,51 @@ class PlaceBlock:
     placement: Placement
 
 
+class PlacementCode(IntEnum):
+    """What became of an order; the numbers are those of the message."""
+
+    PLACED = 1
+    """The block rests where it was ordered."""
+    SLIPPED = 2
+    """A block landed, but elsewhere."""
+    LOST = 3
+    """No block landed; the order can be given again."""
+    COLLAPSED = 4
+    """The tower fell."""
+    IMPOSSIBLE = 5
+    """The block would not come to rest inside the board; nothing was tried."""
+    FAILED = 6
+    """No block can be placed any more: the trial has to end."""
+    TRY_AGAIN = 7
+    """Not now; the order can be given again."""
+    IN_PROGRESS = 8
+    """The order is being carried out; another outcome follows."""
+
+
 @dataclass(frozen=True)
 class PlacementOutcome:
-    """The result of a :class:`PlaceBlock`; ``reason`` says why nothing was placed.
+    """The result of a :class:`PlaceBlock`.
 
-    ``failed``: the world can place no block on that state any more.
+    Attributes:
+        trial_id: of the trial.
+        sequence: of the state that the order referred to.
+        placed: where a block landed; None if none did.
+        reason: a sentence that says why, '' for the usual one.
+        code: what became of the order.
+        progress: of an order that is being carried out, from 0 to 1.
     """
 
     trial_id: str
     sequence: int
     placed: Placed | None
     reason: str = ''
-    failed: bool = False
+    code: PlacementCode = PlacementCode.PLACED
+    progress: float = 0.0
+
+    @property
+    def failed(self) -> bool:
+        """Whether the world can place no block on that state any more."""
+        return self.code is PlacementCode.FAILED
 
 
 @dataclass(frozen=True)

@@ -68,7 +68,7 @@ def _spec(fields: Fields) -> TrialSpec:
 def _decision(fields: Fields, spec: TrialSpec, proposals: tuple[Proposal, ...]) -> DecisionRecord:
     chosen = fields.get('chosen')
     placed, built = fields.count('placed'), fields.mask('built')
-    drawn = _drawn(spec, built, proposed_at(proposals, placed))
+    drawn = drawn_in(spec, built, proposed_at(proposals, placed))
     candidates = tuple(
         _candidate(part, spec.task, drawn[number : number + 1])
         for number, part in enumerate(fields.parts('candidates'))
@@ -84,7 +84,7 @@ def _decision(fields: Fields, spec: TrialSpec, proposals: tuple[Proposal, ...]) 
     return DecisionRecord(placed, decision, fields.count('executed'))
 
 
-def _drawn(spec: TrialSpec, built: Mask, proposals: tuple[Proposal, ...]) -> list[Region]:
+def drawn_in(spec: TrialSpec, built: Mask, proposals: tuple[Proposal, ...]) -> list[Region]:
     """The regions that a person proposed in a state; only there can one be other than rows."""
     if not spec.strategy.asks_person:
         return []

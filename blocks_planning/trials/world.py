@@ -10,6 +10,7 @@ from blocks_planning.board.task import Task
 from blocks_planning.trials.messages import (
     Message,
     PlaceBlock,
+    PlacementCode,
     PlacementOutcome,
     TrialEnded,
     TrialStarted,
@@ -90,8 +91,18 @@ def _carry_out(
     try:
         seen = spec.world.carry_out(spec.task, state.built, action.placement, spec.seed, sequence)
     except ImpossibleOrder as error:
-        return memory, (PlacementOutcome(state.trial_id, state.sequence, None, str(error)),)
+        refused = PlacementCode.IMPOSSIBLE
+        return memory, (
+            PlacementOutcome(state.trial_id, state.sequence, None, str(error), refused),
+        )
     after = state_after(state.trial_id, spec, (*state.observations, seen))
     landed = seen.landed[0] if seen.landed else None
-    outcome = PlacementOutcome(state.trial_id, state.sequence, landed)
+    outcome = PlacementOutcome(state.trial_id, state.sequence, landed, code=_code_of(seen))
     return replace(memory, state=after), (outcome, after)
+
+
+def _code_of(seen: Observation) -> PlacementCode:
+    """What became of the order that an observation is of."""
+    if seen.is_as_ordered:
+        return PlacementCode.PLACED
+    return PlacementCode.SLIPPED if seen.landed else PlacementCode.LOST

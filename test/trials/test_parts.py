@@ -37,6 +37,7 @@ from blocks_planning.trials.messages import (
     CancelTrial,
     Message,
     PlaceBlock,
+    PlacementCode,
     PlacementOutcome,
     PlanMade,
     Remind,
@@ -473,7 +474,7 @@ def test_scribe_has_no_record_before_a_trial() -> None:
 def test_scribe_ends_a_trial_that_the_world_can_not_go_on_with() -> None:
     """With what the world says, and only on the state that it says it of."""
     memory, _ = tell(scribe, [HEARD[0], STATES[0], STATES[1]])
-    failed = PlacementOutcome(TRIAL.trial_id, 1, None, 'the arm is broken', failed=True)
+    failed = PlacementOutcome(TRIAL.trial_id, 1, None, 'the arm is broken', PlacementCode.FAILED)
     for stale in (replace(failed, sequence=0), replace(failed, sequence=2)):
         assert scribe.step(memory, stale) == (memory, ())
     assert scribe.step(memory, replace(failed, failed=False)) == (memory, ())
