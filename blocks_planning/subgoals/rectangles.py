@@ -57,17 +57,24 @@ def rectangles(
     """
     most = max_cells or area(task.silhouette) * 3 // 4
     supported = task.board.ground | built << 1
-    found: list[tuple[RectangleLabel, Mask]] = []
-    for sides, inside, edges in _shapes(task.board):
-        cells = inside & task.silhouette
-        if (
-            not inside & built
-            and cells & supported
-            and all(edge & cells for edge in edges)
-            and min_cells <= area(cells) <= most
-        ):
-            found.append(((KIND, sides), cells))
-    return found
+    return [
+        (label, cells)
+        for label, inside, cells in _empty_rectangles(task.board, task.silhouette, min_cells, most)
+        if not inside & built and cells & supported
+    ]
+
+
+@lru_cache(maxsize=64)
+def _empty_rectangles(
+    board: Board, silhouette: Mask, least: int, most: int
+) -> tuple[tuple[RectangleLabel, Mask, Mask], ...]:
+    """What of the conditions does not depend on the state: label, all cells, target cells."""
+    found = []
+    for sides, inside, edges in _shapes(board):
+        cells = inside & silhouette
+        if least <= area(cells) <= most and all(edge & cells for edge in edges):
+            found.append(((KIND, sides), inside, cells))
+    return tuple(found)
 
 
 @lru_cache(maxsize=8)
