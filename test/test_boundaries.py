@@ -2,8 +2,8 @@
 
 ::
 
-    cli  ->  ros  ->  view | experiments | analysis  ->  trials  ->  subgoals  ->  search
-         ->  board  ->  families  ->  located | resources | settings  ->  errors
+    cli  ->  ros  ->  view | experiments | analysis  ->  people  ->  trials  ->  subgoals
+         ->  search  ->  board  ->  families  ->  located | resources | settings  ->  errors
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ LAYERS = [
     {'search'},
     {'subgoals'},
     {'trials'},
+    {'people'},
     {'view', 'experiments', 'analysis'},
     {'ros'},
     {'cli'},
