@@ -22,6 +22,7 @@ LAYERS = [
     {'subgoals'},
     {'trials'},
     {'people'},
+    {'fitting'},
     {'view', 'experiments', 'analysis'},
     {'ros'},
     {'cli'},
