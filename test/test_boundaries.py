@@ -2,8 +2,9 @@
 
 ::
 
-    cli  ->  ros  ->  view | experiments | analysis  ->  trials  ->  worlds  ->  subgoals  ->  search
-         ->  board  ->  families  ->  located | resources | settings  ->  errors
+    cli  ->  ros  ->  view | experiments | analysis  ->  fitting  ->  people  ->  trials  ->  worlds
+         ->  subgoals  ->  search  ->  board  ->  families  ->  located | resources | settings
+         ->  errors
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ LAYERS = [
     {'subgoals'},
     {'worlds'},
     {'trials'},
+    {'people'},
+    {'fitting'},
     {'view', 'experiments', 'analysis'},
     {'ros'},
     {'cli'},
