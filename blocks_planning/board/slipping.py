@@ -83,7 +83,7 @@ def pick(outcomes: tuple[Landing, ...], below: Callable[[int], int]) -> Landing:
     return outcomes[-1]
 
 
-def check_probability(name: str, value: float) -> None:
+def check_probability(name: str, value: object) -> None:
     """Refuse what is not a probability.
 
     Raises:

@@ -13,7 +13,7 @@ from blocks_planning.board.task import Task
 from blocks_planning.cli.interrupt import interruptible
 from blocks_planning.cli.sweeping import progress
 from blocks_planning.search.result import CancelToken, Problem
-from blocks_planning.search.searches import make_search
+from blocks_planning.search.searches import BreadthFirst
 from blocks_planning.search.slipping import SlipChances, analyse_slips
 
 _MOST_AT_ONCE = 2
@@ -28,7 +28,7 @@ def print_slips(
     as_json: bool,
 ) -> None:
     """Print a row per tower and slip as soon as the tower is done, in the order of towers."""
-    search = make_search('bfs', {} if depth is None else {'depth': depth})
+    search = BreadthFirst() if depth is None else BreadthFirst(depth)
 
     def analyse(task: Task, cancel: CancelToken) -> list[SlipChances] | None:
         return analyse_slips(Problem(task, 0, task.silhouette), slips, search, limit, cancel)

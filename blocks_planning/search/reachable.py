@@ -52,7 +52,7 @@ class Reachable:
     @property
     def count(self) -> int:
         """Numbers in use: the states, and 0 for those that are not alive."""
-        return int(self.space.count[0])
+        return int(self.space.used[0])
 
     def number(self, built: Mask) -> int:
         """The number of the state in which ``built`` is filled; 0 if it is not alive here."""
@@ -84,7 +84,7 @@ def find_reachable(
     cancel = cancel or CancelToken()
     space = _first_space(problem)
     looked_at = 1
-    while looked_at < (known := int(space.count[0])):
+    while looked_at < (known := int(space.used[0])):
         if known - 1 > limit:
             raise _too_large(problem, limit)
         report('states', looked_at - 1, known - 1)
@@ -114,7 +114,7 @@ def _first_space(problem: Problem) -> Space:
         shadow=np.zeros((size, *mask_shape), np.uint64),
         filled=np.zeros(size, np.int32),
         slots=np.zeros(_slots_for(size), np.int32),
-        count=np.ones(1, np.int64),
+        used=np.ones(1, np.int64),
         places=np.zeros_like(tables.legal),
         child=np.zeros(board.width + 2, np.int64),
         legal=np.zeros(board.width + 2, np.uint8),
@@ -122,7 +122,7 @@ def _first_space(problem: Problem) -> Space:
     if not rules.is_dead(board, problem.built, problem.region):
         space.shadow[1] = pack([rules.shadow(board, problem.built)], board.size)[0]
         space.filled[1] = area(problem.built)
-        space.count[0] = 2
+        space.used[0] = 2
         fill_slots(space)
     return space
 

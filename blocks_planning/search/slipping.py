@@ -184,10 +184,16 @@ def analyse_slips(
     if looking is None:
         return None
     start = reachable.number(problem.built)
-    best, mean = (values[start].tolist() for values in chances)
+    best, mean = chances
     return [
-        SlipChances(slip, *row, reachable.count - 1)
-        for slip, *row in zip(slips, best, looking[start].tolist(), mean, strict=True)
+        SlipChances(
+            slip=slip,
+            optimum=float(best[start, k]),
+            bfs=float(looking[start, k]),
+            random=float(mean[start, k]),
+            states=reachable.count - 1,
+        )
+        for k, slip in enumerate(slips)
     ]
 
 

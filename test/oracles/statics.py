@@ -103,6 +103,5 @@ def pivot(table: list[Row], leaving: int, entering: int) -> None:
         if number != leaving and row[entering]:
             factor = row[entering]
             table[number] = [
-                value - factor * other
-                for value, other in zip(row, table[leaving], strict=True)
+                value - factor * other for value, other in zip(row, table[leaving], strict=True)
             ]

@@ -44,7 +44,7 @@ class Space(NamedTuple):
     shadow: np.ndarray  # mask (n,)
     filled: np.ndarray  # int32 (n,) [cells]
     slots: np.ndarray  # int32 (2**k,): hash table of numbers, 0 where free, at least 2 n
-    count: np.ndarray  # int64 (1,): numbers in use, with state 0
+    used: np.ndarray  # int64 (1,): numbers in use, with state 0
     places: np.ndarray  # mask (blocks,): where blocks land, of the state being looked at
     child: np.ndarray  # int64 (width + 2,): state after a block, by its column + 1
     legal: np.ndarray  # uint8 (width + 2,): whether that placement is legal
@@ -90,11 +90,11 @@ def land(space, shadow, filled, block, adding):
             if count(after & region) == reached:
                 slot = _slot(space, after)
                 if adding and space.slots[slot] == 0:
-                    index = space.count[0]
+                    index = space.used[0]
                     space.slots[slot] = index
                     store(space.shadow, index, after)
                     space.filled[index] = reached
-                    space.count[0] = index + 1
+                    space.used[0] = index + 1
                 space.child[column] = np.int64(space.slots[slot])
         places = rest
     return number
@@ -116,8 +116,8 @@ def expand(space, first, most, cancel):
     """
     children = space.tables.area.size * (space.child.size - 2)
     end = first + most
-    while first < space.count[0] and first < end:
-        if space.count[0] + children > space.filled.size:
+    while first < space.used[0] and first < end:
+        if space.used[0] + children > space.filled.size:
             break
         if first % _CHECK_EVERY == 0 and cancel[0] != 0:
             break
@@ -132,7 +132,7 @@ def expand(space, first, most, cancel):
 @kernel
 def fill_slots(space):
     """Enter every state into an empty hash table."""
-    for index in range(1, space.count[0]):
+    for index in range(1, space.used[0]):
         space.slots[_slot(space, load(space.shadow, index))] = index
 
 
