@@ -109,7 +109,8 @@ def growth(out: Path, towers: int, seeds: int, largest: int, workers: int | None
 
 @click.command(
     epilog='\b\nExamples:\n  blocks-planning exact-policy cogsci2021/9\n'
-    '  blocks-planning exact-policy cogsci2021 --search random --json'
+    '  blocks-planning exact-policy cogsci2021 --search random --json\n'
+    '  blocks-planning exact-policy cogsci2021/9 --slip 0.05 --slip 0.1'
 )
 @stimuli_argument
 @click.option('--search', type=click.Choice(['bfs', 'random']), default='bfs', show_default=True)
@@ -122,22 +123,44 @@ def growth(out: Path, towers: int, seeds: int, largest: int, workers: int | None
     show_default=True,
     help='Most states to look at.',
 )
+@click.option(
+    '--slip',
+    'slips',
+    type=float,
+    multiple=True,
+    help='Chance that a block lands one column left or right of its order, 0 to 1; may be given '
+    'several times. Compares the best possible policy with bfs and random.',
+)
 @library_option
 @json_option
+@click.pass_context
 def exact_policy(
+    context: click.Context,
     addresses: tuple[str, ...],
     search: str,
     depth: int | None,
     budget: int,
     limit: int,
+    slips: tuple[float, ...],
     library: str,
     as_json: bool,
 ) -> None:
     """Compute what bfs or random achieves on a tower, without sampling.
 
     Success and expected cost of one attempt, and success of attempt after attempt within the
-    budget.
+    budget. With --slip: in a world where blocks slip, the highest chance of success that any
+    policy can reach, and that of one attempt of bfs and of random.
     """
+    if slips:
+        from blocks_planning.cli.slipping import print_slips
+
+        given = [name for name in ('search', 'budget') if is_given(context, name)]
+        if given:
+            raise click.UsageError(
+                f'--slip compares all policies by one attempt; leave out --{given[0]}'
+            )
+        tasks = [(each.name, task_of(each, library)) for each in find_all(addresses)]
+        return print_slips(tasks, slips, depth, limit, as_json)
     from blocks_planning.search.policy import analyse_policy
     from blocks_planning.search.result import Problem
     from blocks_planning.search.searches import make_search
@@ -160,3 +183,9 @@ def exact_policy(
             + ('' if cost is None else f' ({cost:,.1f} if it succeeds)')
             + f'; solve within {budget:,}: {found.within_budget:.6g}'
         )
+    return None
+
+
+def is_given(context: click.Context, name: str) -> bool:
+    """Whether an option was written on the command line."""
+    return context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT
