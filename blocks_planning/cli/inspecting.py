@@ -10,7 +10,8 @@ from types import ModuleType
 
 import click
 
-from blocks_planning.board.stimuli import installed_sets, read_file
+from blocks_planning.board.pictures import read_file
+from blocks_planning.board.stimuli import installed_sets
 from blocks_planning.cli.interrupt import interruptible
 from blocks_planning.cli.options import (
     find_all,

@@ -18,7 +18,7 @@ import numpy as np
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Board, Mask
-from blocks_planning.board.kernels.masks import WORD_BITS, pack, words_of
+from blocks_planning.board.kernels.masks import WORD_BITS, pack
 from blocks_planning.board.task import Task
 from blocks_planning.errors import LimitExceeded
 from blocks_planning.search.compiled import placements_of
@@ -44,12 +44,14 @@ class ExactAnswer:
     Attributes:
         fewest_blocks: that rebuild the silhouette; None if nothing does.
         arrangements: number of different sets of placed blocks that rebuild it.
+        optimal_arrangements: number of those that have ``fewest_blocks`` blocks.
         by_rows: fewest blocks for the regions rows(1) to rows(height).
         placements: one way with fewest blocks, in an order in which it can be built.
     """
 
     fewest_blocks: int | None
     arrangements: int
+    optimal_arrangements: int
     by_rows: tuple[int | None, ...]
     placements: tuple[Placed, ...] | None
 
@@ -79,10 +81,11 @@ def analyse(task: Task, cancel: CancelToken | None = None) -> ExactAnswer | None
             continue
         except _Cancelled:
             return None
-        fewest, arrangements = program.answer_at(task.board.height)
+        fewest, arrangements, optimal = program.answer_at(task.board.height)
         return ExactAnswer(
             fewest_blocks=fewest,
             arrangements=arrangements,
+            optimal_arrangements=optimal,
             by_rows=tuple(program.answer_at(k)[0] for k in range(1, task.board.height + 1)),
             placements=None if fewest is None else program.placements(),
         )
@@ -115,7 +118,7 @@ class _Program:
         self._cancel = cancel
         self._mask_shape = pack([0], self._board.size).shape[1:]
         self._ways: list[tuple[np.ndarray, np.ndarray]] = []
-        self._answers: dict[int, tuple[int | None, int]] = {}
+        self._answers: dict[int, tuple[int | None, int, int]] = {}
         self.generated = 0
 
     def run(self) -> None:
@@ -126,8 +129,9 @@ class _Program:
         layer = make_layer(1, self._mask_shape, self._words)
         layer.filled[:] = pack([problem.built], board.size)
         layer.fewest[:] = 0
-        layer.arrangements[:] = words_of([1])[:, :1]
-        layer.arrangements[:, 1:] = 0
+        for counts in (layer.arrangements, layer.optimal):
+            counts[:] = 0
+            counts[:, :1] = 1
         stored = 0
         for row in range(board.height):
             for column in range(board.width):
@@ -182,13 +186,15 @@ class _Program:
         region = self._problem.region & self._board.rows_below(height) | self._problem.built
         same = layer.filled == pack([region], self._board.size)[0]
         for state in np.flatnonzero(same if same.ndim == 1 else same.all(axis=1)):
-            words = layer.arrangements[state].tolist()
-            count = sum(word << WORD_BITS * index for index, word in enumerate(words))
-            self._answers[height] = int(layer.fewest[state]), count
+            self._answers[height] = (
+                int(layer.fewest[state]),
+                _count_of(layer.arrangements[state]),
+                _count_of(layer.optimal[state]),
+            )
 
-    def answer_at(self, height: int) -> tuple[int | None, int]:
-        """Fewest blocks and number of arrangements of the rows below a height."""
-        return self._answers.get(height, (None, 0))
+    def answer_at(self, height: int) -> tuple[int | None, int, int]:
+        """Fewest blocks, arrangements, and those with the fewest, of the rows below a height."""
+        return self._answers.get(height, (None, 0, 0))
 
     def placements(self) -> tuple[Placed, ...]:
         """A way to fill the region with fewest blocks, by rising bottom row."""
@@ -206,6 +212,11 @@ class _Program:
             f'exact: a region of this shape on {board.width} x {board.height} cells needs more '
             f'than the limit of {MAX_STATES} states'
         )
+
+
+def _count_of(words: np.ndarray) -> int:
+    """The number that some words stand for, the lowest first."""
+    return sum(word << WORD_BITS * index for index, word in enumerate(words.tolist()))
 
 
 def _fits(board: Board, placed: Placed) -> bool:

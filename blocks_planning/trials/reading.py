@@ -9,7 +9,7 @@ from typing import Any
 
 from blocks_planning.board.blocks import Placed, parse_library
 from blocks_planning.board.geometry import MAX_SIDE, Board, Mask
-from blocks_planning.board.stimuli import parse_silhouettes
+from blocks_planning.board.pictures import parse_silhouettes
 from blocks_planning.board.task import Task
 from blocks_planning.errors import InvalidInput, RecordError, shown
 from blocks_planning.search.result import MAX_BUDGET, SolveStatus
