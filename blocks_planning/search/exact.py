@@ -17,11 +17,12 @@ import numpy as np
 
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placed
-from blocks_planning.board.geometry import Board, Mask
+from blocks_planning.board.geometry import Board, Mask, area
 from blocks_planning.board.kernels.masks import WORD_BITS, pack
 from blocks_planning.board.task import Task
 from blocks_planning.errors import LimitExceeded
 from blocks_planning.search.compiled import placements_of
+from blocks_planning.search.gauge import Gauge
 from blocks_planning.search.kernels.tiling import (
     CANCELLED,
     NO_MOVE,
@@ -64,8 +65,15 @@ class _CountOverflow(Exception):
     """Arrangements need more words."""
 
 
-def analyse(task: Task, cancel: CancelToken | None = None) -> ExactAnswer | None:
+def analyse(
+    task: Task, cancel: CancelToken | None = None, gauge: Gauge | None = None
+) -> ExactAnswer | None:
     """Fewest blocks and number of arrangements of a silhouette; None if cancelled.
+
+    Args:
+        task: silhouette and blocks.
+        cancel: ends it from another thread.
+        gauge: is told how far it is; a step is a cell.
 
     Raises:
         LimitExceeded: if more than ``MAX_STATES`` states would be stored; nothing else ends it.
@@ -73,7 +81,7 @@ def analyse(task: Task, cancel: CancelToken | None = None) -> ExactAnswer | None
     problem = Problem(task, 0, task.silhouette)
     words = 1
     while True:
-        program = _Program(problem, words, cancel or CancelToken())
+        program = _Program(problem, words, cancel or CancelToken(), gauge or Gauge())
         try:
             program.run()
         except _CountOverflow:
@@ -97,7 +105,7 @@ def solve_exactly(problem: Problem, cancel: CancelToken) -> SolveResult:
     Raises:
         LimitExceeded: see :func:`analyse`.
     """
-    program = _Program(problem, 0, cancel)
+    program = _Program(problem, 0, cancel, Gauge())
     try:
         program.run()
     except _Cancelled:
@@ -111,8 +119,9 @@ def solve_exactly(problem: Problem, cancel: CancelToken) -> SolveResult:
 class _Program:
     """The dynamic program of one problem; ``words`` 64-bit words count arrangements."""
 
-    def __init__(self, problem: Problem, words: int, cancel: CancelToken) -> None:
+    def __init__(self, problem: Problem, words: int, cancel: CancelToken, gauge: Gauge) -> None:
         self._problem = problem
+        self._gauge = gauge
         self._board = problem.task.board
         self._words = words
         self._cancel = cancel
@@ -132,15 +141,17 @@ class _Program:
         for counts in (layer.arrangements, layer.optimal):
             counts[:] = 0
             counts[:, :1] = 1
-        stored = 0
+        gauge = self._gauge
+        gauge.done, gauge.total, gauge.states = 0, area(problem.region & ~problem.built), 0
         for row in range(board.height):
             for column in range(board.width):
                 cell = board.mask([(column, row)])
                 if cell & problem.region & ~problem.built:
                     layer = self._fill(layer, cell)
                     self._ways.append((layer.parent, layer.move))
-                    stored += len(layer.move)
-                    if stored > MAX_STATES:
+                    gauge.done += 1
+                    gauge.states += len(layer.move)
+                    if gauge.states > MAX_STATES:
                         raise self._too_large()
             self._keep_answer(row + 1, layer)
 

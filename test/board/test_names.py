@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from pathlib import Path
 
 import pytest
 from builders import picture
@@ -19,13 +20,26 @@ STEP = '#.\n##\n'
 
 @pytest.mark.parametrize(
     'name',
-    ['a', '9', 'A_b.c-9', 'é', 'Türme', 'ворота', '門', 'หอคอย', 'मीनार', 'برج', '٣', 'x' * MAX_NAME],
+    [
+        'a',
+        '9',
+        'A_b.c-9',
+        'é',
+        'Türme',
+        'ворота',
+        '門',
+        'หอคอย',
+        'मीनार',
+        'برج',
+        '٣',
+        'x' * MAX_NAME,
+    ],
 )
 def test_letters_and_digits_of_any_script_make_a_name(name: str) -> None:
     assert list(parse_silhouettes(f'tower {name}\n{STEP}', 'x')) == [name]
 
 
-def test_two_ways_to_type_an_accent_are_one_name(tmp_path: object) -> None:
+def test_two_ways_to_type_an_accent_are_one_name() -> None:
     apart, composed = (unicodedata.normalize(form, 'tür') for form in ('NFD', 'NFC'))
     assert apart != composed
     assert list(parse_silhouettes(f'tower {apart}\n{STEP}', 'x')) == [composed]
@@ -34,11 +48,11 @@ def test_two_ways_to_type_an_accent_are_one_name(tmp_path: object) -> None:
 
 
 def test_an_address_finds_a_name_typed_either_way(
-    tmp_path: object, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.chdir(str(tmp_path))
-    with open('towers.txt', 'w', encoding='utf-8') as file:
-        file.write(f'tower {unicodedata.normalize("NFD", "tür")}\n{STEP}')
+    monkeypatch.chdir(tmp_path)
+    text = f'tower {unicodedata.normalize("NFD", "tür")}\n{STEP}'
+    Path('towers.txt').write_text(text, encoding='utf-8')
     for form in ('NFD', 'NFC'):
         [found] = find_stimuli(f'towers.txt/{unicodedata.normalize(form, "tür")}')
         assert (found.board, found.silhouette) == picture('#./##')

@@ -133,7 +133,9 @@ def test_a_column_of_one_cell_is_no_comment(rows: str) -> None:
         pytest.param('###\n#\t#\n', 'line 2, column 2', r"got '\t'", id='tab inside a row'),
         pytest.param('# #\n# #\n', 'line 1, column 2', "got ' '", id='picture drawn with blanks'),
         pytest.param('##\n## comment\n', 'line 2, column 3', "got ' '", id="comment without '#'"),
-        pytest.param('Tower a\n##\n', 'line 1, column 1', "'tower NAME'", id='heading in capitals'),
+        pytest.param(
+            'Tower a\n##\n', 'line 1, column 1', "'tower NAME'", id='heading in capitals'
+        ),
         pytest.param('#' * 17, 'line 1, column 17', 'at most 16 cells', id='17 columns'),
         pytest.param('#' * 999, 'line 1, column 17', 'this one has 999', id='999 columns'),
         pytest.param('#\n' * 17, 'line 17', 'at most 16 rows', id='17 rows'),

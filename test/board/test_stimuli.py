@@ -25,7 +25,6 @@ def one_line(error: StimulusError) -> str:
     return message
 
 
-
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A working directory with some files of silhouettes."""
