@@ -6,7 +6,7 @@ from typing import Any
 
 from blocks_planning.board.blocks import Block, Placement, parse_library
 from blocks_planning.board.geometry import Board
-from blocks_planning.board.stimuli import parse_silhouettes
+from blocks_planning.board.pictures import parse_silhouettes
 from blocks_planning.board.task import Task
 from blocks_planning.errors import RecordError
 from blocks_planning.search.result import SolveStatus

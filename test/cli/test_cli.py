@@ -411,13 +411,6 @@ def test_bad_command_is_refused(run: Run, towers: str, command: str, words: str)
     assert done.err.count('Error: ') == 1
 
 
-def test_question_that_is_too_large_is_refused_in_a_line(run: Run, tmp_path: Path) -> None:
-    _draw(tmp_path / 'large.txt', full='/'.join(['#' * 16] * 16))
-    done = run('exact', tmp_path / 'large.txt')
-    assert (done.code, done.out) == (2, '')
-    assert re.fullmatch(r'Error: exact: .* needs more than the limit of \d+ states\n', done.err)
-
-
 # Stimuli, count, exact.
 
 
@@ -462,7 +455,10 @@ def test_exact_prints_published_numbers(run: Run) -> None:
     done = run('exact', 'cogsci2021/1', 'cogsci2021/7', '--json')
     assert (done.code, done.err) == (0, '')
     first, second = map(json.loads, done.out.splitlines())
-    assert list(first) == ['stimulus', 'fewest_blocks', 'arrangements', 'by_rows', 'placements']
+    assert list(first) == [
+        *('stimulus', 'fewest_blocks', 'arrangements', 'optimal_arrangements', 'by_rows'),
+        'placements',
+    ]
     assert first['stimulus'] == 'cogsci2021/1'
     assert (first['fewest_blocks'], first['arrangements']) == (10, 12780)
     assert first['by_rows'] == [4, None, 8, 6, 10, 9, 12, 10]
@@ -470,7 +466,8 @@ def test_exact_prints_published_numbers(run: Run) -> None:
     assert all(len(placement) == 4 for placement in first['placements'])
     assert second['by_rows'] == [3, 2, None, 5, None, None, None, 12]
     assert run('exact', 'cogsci2021/1').out == (
-        'cogsci2021/1: 10 blocks, 12,780 arrangements; by number of rows: 4 - 8 6 10 9 12 10\n'
+        'cogsci2021/1: fewest blocks 10; arrangements 12,780, with fewest blocks 4; '
+        'by number of rows: 4 - 8 6 10 9 12 10\n'
     )
 
 
@@ -481,7 +478,7 @@ def test_exact_says_what_is_impossible(run: Run, tmp_path: Path) -> None:
     assert done.code == 0
     assert (data['fewest_blocks'], data['arrangements'], data['placements']) == (None, 0, None)
     assert (
-        'impossible, 0 arrangements; by number of rows: 1 -'
+        'impossible; arrangements 0; by number of rows: 1 -'
         in run('exact', tmp_path / 'odd.txt').out
     )
 

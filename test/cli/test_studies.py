@@ -72,7 +72,6 @@ def test_sweep_with_a_failed_trial_exits_with_1(folder: Path) -> None:
         (['sweep', 'bad.yaml', '--out', 'x'], "bad.yaml, line 4, key 'sedes': is not a key here"),
         (['sweep', 'sweep.yaml', '--out', 'towers.txt'], '--out towers.txt: File exists'),
         (['exact-policy', 'towers.txt/a', '--search', 'random', '--depth', '2'], 'has no setting'),
-        (['exact-policy', 'cogsci2021/2', '--limit', '9'], 'more than the limit of 9 states'),
         (
             ['exact-policy', 'cogsci2021/2', '--slip', '0.1', '--limit', '9'],
             'more than the limit of 9 states',
@@ -127,6 +126,18 @@ def test_exact_policy_where_blocks_slip_compares_all_policies(folder: Path) -> N
         done = run(folder, 'exact-policy', 'towers.txt', '--slip', '0.1', *words)
         assert done.returncode == 2
         assert f'leave out {words[0]}' in done.stderr
+
+
+def test_a_tower_over_the_limit_of_states_is_reported_in_its_row(folder: Path) -> None:
+    words = ['exact-policy', 'cogsci2021/2', 'towers.txt/a', '--limit', '9']
+    done = run(folder, *words, '--json')
+    assert (done.returncode, done.stderr) == (3, '')
+    first, second = map(json.loads, done.stdout.splitlines())
+    assert 'more than the limit of 9 states' in first['problem']
+    assert second['success'] == pytest.approx(1.0)
+    first, second = run(folder, *words).stdout.splitlines()
+    assert 'cogsci2021/2: exact-policy: bfs can reach more than the limit of 9' in first
+    assert 'towers.txt/a: one attempt succeeds' in second
 
 
 def test_limit_that_is_shown_is_the_one_that_holds(folder: Path) -> None:

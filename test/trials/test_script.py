@@ -167,6 +167,7 @@ def test_mistake_is_named_where_it_stands(
         read(tmp_path, GOOD.replace(old, new, 1))
     text = str(refused.value)
     assert text.startswith(f'{tmp_path / "trials.yaml"}, {place}')
+    assert text.count('trials.yaml') == 1
     assert re.search(said, text)
     assert '\n' not in text
 
