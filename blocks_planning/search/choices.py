@@ -11,8 +11,9 @@ from blocks_planning.board.geometry import Mask
 from blocks_planning.board.kernels.masks import WORD_BITS, pack
 from blocks_planning.board.task import Task
 from blocks_planning.search.compiled import tables_of
-from blocks_planning.search.kernels import breadth_first, random_placement
+from blocks_planning.search.kernels import breadth_first, lookahead, random_placement
 from blocks_planning.search.result import CancelToken, Problem
+from blocks_planning.search.searches import BreadthFirst
 
 
 class Way(NamedTuple):
@@ -43,11 +44,13 @@ class Chooser:
     A state is its shadow (see :mod:`.moves`) and its number of filled cells.
     """
 
-    def __init__(self, task: Task, region: Mask, depth: int, cancel: CancelToken) -> None:
-        """A search of some depth for a region; ``cancel`` makes it answer None."""
+    def __init__(
+        self, task: Task, region: Mask, search: BreadthFirst, cancel: CancelToken
+    ) -> None:
+        """A search for a region; ``cancel`` makes it answer None."""
         tables = tables_of(task, region)
         self._tables, self._cancel = tables, cancel
-        self._search = breadth_first.make_search(tables, depth)
+        self._search = lookahead.make_search(tables, search.depth, search.dead_ends_last)
         words = tables.shadow.reshape(len(tables.shadow), -1).tolist()
         self._shadows = [
             sum(word << WORD_BITS * index for index, word in enumerate(row)) for row in words

@@ -162,8 +162,7 @@ class _Program:
         shadow = rules.shadow(problem.task.board, problem.built)
         target = area(problem.region)
         layers: dict[int, dict[int, Arrivals]] = {area(problem.built): {shadow: start}}
-        depth = self._search.depth
-        chooser = Chooser(problem.task, problem.region, depth, self._cancel)
+        chooser = Chooser(problem.task, problem.region, self._search, self._cancel)
         for filled in range(area(problem.built), target):
             for state, arrivals in layers.pop(filled, {}).items():
                 self.states += 1
