@@ -34,6 +34,7 @@ TRIALS = pa.schema(
         ('commit', _WORD),
         ('search', _WORD),
         ('depth', pa.int32()),
+        ('dead_ends', _WORD),
         ('iterations', pa.int32()),
         ('divisor', _WORD),
         ('execute', _WORD),

@@ -12,8 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from blocks_planning.board import rules
-from blocks_planning.board.blocks import Placed
-from blocks_planning.board.geometry import Mask
 from blocks_planning.board.kernels.masks import WORD_BITS, pack
 from blocks_planning.board.task import Task
 from blocks_planning.errors import LimitExceeded
@@ -26,11 +24,12 @@ from blocks_planning.search.kernels.walking import (
     make_walks,
     walk,
 )
+from blocks_planning.search.reachable import count_states
 from blocks_planning.search.result import CancelToken
 
-MAX_STATES = 40_000_000
-"""Most states that are kept, about 50 bytes each (2 GB)."""
-_AT_FIRST = 1 << 20
+MAX_OUTLINES = 10_000_000
+"""Most outlines that are kept, some 50 bytes each (0.5 GB)."""
+_AT_FIRST = 1 << 18
 _GROWTH = 4
 
 
@@ -51,61 +50,57 @@ class TaskSize:
 
 
 def count_task(
-    task: Task, limit: int = MAX_STATES, cancel: CancelToken | None = None
+    task: Task, limit: int = MAX_OUTLINES, cancel: CancelToken | None = None
 ) -> TaskSize | None:
     """Count states and sequences of a task from the empty board; None if cancelled.
 
     Raises:
-        LimitExceeded: if there are more than ``limit`` states.
+        LimitExceeded: if there are more than ``limit`` outlines, or the states have too many
+            profiles (see :func:`.reachable.count_states`).
     """
     cancel = cancel or CancelToken()
+    states = count_states(task, cancel=cancel)
+    walks = _walk(task, limit, cancel)
+    if states is None or walks is None:
+        return None
+    complete = _find(walks, task, rules.shadow(task.board, task.silhouette))
+    return TaskSize(
+        states,
+        0 if complete is None else _number(walks.whole[complete]),
+        _number(walks.ended[0]),
+    )
+
+
+def _walk(task: Task, limit: int, cancel: CancelToken) -> Walks | None:
+    """The outlines of a task with the ways to each; None if cancelled."""
+    tables = tables_of(task, task.silhouette)
+    region = pack([task.silhouette, 0], task.board.size)
     size, words = min(_AT_FIRST, limit), 1
     while True:
-        walks, found = _walk(task, size, words, cancel)
+        walks = make_walks(size, tables.legal.shape[1:], words, task.board.size, len(task.library))
+        found = walk(walks, tables, region, cancel.flag)
         if found == CANCELLED:
             return None
         if found == OVERFLOW:
             words *= 2
-        elif found == FULL and size < limit:
-            size = min(limit, size * _GROWTH)
-        elif found == FULL:
+        elif found != FULL:
+            return walks
+        elif size == limit:
             raise LimitExceeded(
-                f'more than the limit of {limit} states can be reached on this silhouette of '
+                f'more than the limit of {limit} outlines can be reached on this silhouette of '
                 f'{task.board.width} x {task.board.height} cells'
             )
         else:
-            return TaskSize(found, _ways_to(task.silhouette, task, walks), _number(walks.ended[0]))
+            size = min(limit, size * _GROWTH)
 
 
-def _walk(task: Task, size: int, words: int, cancel: CancelToken) -> tuple[Walks, int]:
-    tables = tables_of(task, task.silhouette)
-    board = task.board
-    walks = make_walks(size, tables.legal.shape[1:], words, board.size, len(task.library))
-    cells = [
-        _cells_at(task, block, bit) for block in range(len(task.library)) for bit in range(board.size)
-    ]
-    found = walk(
-        walks, tables, pack(cells, board.size), pack([0, 0], board.size), cancel.flag
-    )
-    return walks, int(found)
-
-
-def _cells_at(task: Task, block: int, bit: int) -> Mask:
-    """The cells of a block with its lower left cell at a bit; none if it leaves the board."""
-    width, height = task.library[block]
-    column, row = task.board.cell(bit)
-    if column + width > task.board.width or row + height > task.board.height:
-        return 0
-    return rules.cells_of(task.board, Placed(width, height, column, row))
-
-
-def _ways_to(state: Mask, task: Task, walks: Walks) -> int:
-    """The number of ways to a state; 0 if none leads there."""
-    number = int(walks.first[state.bit_count()])
-    wanted = pack([state], task.board.size)[0]
-    while number >= 0 and not np.array_equal(walks.filled[number], wanted):
+def _find(walks: Walks, task: Task, shadow: int) -> int | None:
+    """The number of an outline; None if nothing leads there."""
+    number = int(walks.first[shadow.bit_count()])
+    wanted = pack([shadow], task.board.size)[0]
+    while number >= 0 and not np.array_equal(walks.shadow[number], wanted):
         number = int(walks.following[number])
-    return 0 if number < 0 else _number(walks.ways[number])
+    return None if number < 0 else number
 
 
 def _number(words: np.ndarray) -> int:
