@@ -35,10 +35,12 @@ def reproduce(out: Path, quick: bool, workers: int | None) -> int:
     Figures and tables of all trials are beside them. Interrupted and started again it goes on
     where it stopped. The exit code is 1 if a trial could not be run.
     """
-    from blocks_planning.analysis.report import VERDICTS, write_report
+    from blocks_planning.analysis.comparing import count_verdicts
+    from blocks_planning.analysis.report import write_report
     from blocks_planning.experiments.exactly import exact_table
     from blocks_planning.experiments.reading import find_sweep, read_sweep
     from blocks_planning.experiments.running import default_workers
+    from blocks_planning.experiments.sizes import size_table
     from blocks_planning.experiments.sweeping import run_sweep
 
     wanted = read_sweep(find_sweep('paper_quick' if quick else 'paper'))
@@ -48,15 +50,18 @@ def reproduce(out: Path, quick: bool, workers: int | None) -> int:
         summary = run_sweep(wanted, out / 'sweep', workers, report=report)
     swept = perf_counter()
     exact = exact_table(wanted, workers)
+    sizes = size_table(wanted, workers)
     known = perf_counter()
     notes = [_QUICK] if quick else []
-    results = write_report(out / 'sweep', out, exact, notes)
+    results = write_report(out / 'sweep', out, exact, sizes, notes)
     end = perf_counter()
     print_summary(summary, out / 'sweep')
     for preset, found in results['presets'].items():
-        verdicts = [claim['verdict'] for claim in found['claims']]
-        counted = ', '.join(f'{verdicts.count(verdict)} {verdict}' for verdict in VERDICTS)
-        click.echo(f'{preset}: {len(verdicts)} claims: {counted}')
+        counted = count_verdicts(found['claims'])
+        click.echo(
+            f'{preset}: {counted["effects_same"]} of {counted["effects"]} effects are the same, '
+            f'{counted["sizes_overlap"]} of {counted["sizes"]} sizes overlap'
+        )
     click.echo(
         f'{out / "report.html"}: written in {end - start:.1f} s (trials {swept - start:.1f} s, '
         f'exact values {known - swept:.1f} s, statistics and figures {end - known:.1f} s)'
