@@ -11,7 +11,7 @@ import click
 
 from blocks_planning.board.task import Task
 from blocks_planning.cli.interrupt import interruptible
-from blocks_planning.cli.sweeping import progress
+from blocks_planning.cli.progress import bar
 from blocks_planning.search.result import CancelToken, Problem
 from blocks_planning.search.searches import BreadthFirst
 from blocks_planning.search.slipping import SlipChances, analyse_slips
@@ -26,7 +26,7 @@ def print_slips(
     depth: int | None,
     limit: int,
     as_json: bool,
-) -> None:
+) -> int:
     """Print a row per tower and slip as soon as the tower is done, in the order of towers."""
     search = BreadthFirst() if depth is None else BreadthFirst(depth)
 
@@ -36,7 +36,7 @@ def print_slips(
     def work(cancel: CancelToken) -> bool:
         """All towers, in threads: kernels run without the GIL. False if cancelled."""
         workers = min(_MOST_AT_ONCE, os.cpu_count() or 1)
-        with ThreadPoolExecutor(workers) as pool, progress('Towers') as report:
+        with ThreadPoolExecutor(workers) as pool, bar('Towers') as report:
             waiting = [(name, pool.submit(analyse, task, cancel)) for name, task in tasks]
             try:
                 return _print_all(waiting, as_json, report)
@@ -47,6 +47,7 @@ def print_slips(
     finished, interrupted = interruptible(work)
     if interrupted or not finished:
         raise KeyboardInterrupt
+    return 0
 
 
 def _print_all(

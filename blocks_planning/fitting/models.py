@@ -15,7 +15,7 @@ import numpy as np
 
 from blocks_planning.errors import ConfigurationError, shown
 from blocks_planning.fitting.choiceset import NONE, ChoiceSet
-from blocks_planning.people.families import FAMILIES
+from blocks_planning.people.families import family_names
 
 RANDOM = 'random'
 BOUNDS = {'lambda': (1e-7, 1.0), 'temperature': (1e-2, 1e3), 'lapse': (1e-6, 1 - 1e-6)}
@@ -93,10 +93,10 @@ def parse_model(text: str) -> Model:
     progress = not rest.endswith('-no-progress')
     rest = rest.removesuffix('-no-progress')
     regions, _, ahead = rest.partition('-')
-    if regions in FAMILIES and ahead in ('', '2', '3'):
+    if regions in family_names() and ahead in ('', '2', '3'):
         return Model(regions, int(ahead or 1), cost, progress)
     raise ConfigurationError(
-        f'model must be {RANDOM}, or a region family ({", ".join(FAMILIES)}), then -2 or -3 for '
+        f'model must be {RANDOM}, or a region family ({", ".join(family_names())}), then -2 or -3 for '
         f'the horizon, then -no-cost or -no-progress, got {shown(text)}'
     )
 

@@ -58,7 +58,7 @@ def _points(record: TrialRecord) -> Iterator[ChoicePoint]:
     asking = Asking(spec.search, spec.seed, spec.budget)
     for entry in record.decisions:
         built = entry.decision.built
-        chosen = _drawn(record, entry.placed, built) if of_person else _decided(entry.decision)
+        chosen = _drawn(record, entry.sequence, built) if of_person else _decided(entry.decision)
         for region in chosen:
             cells = region & spec.task.silhouette & ~built
             if cells:

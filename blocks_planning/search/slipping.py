@@ -23,7 +23,7 @@ from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Mask
 from blocks_planning.board.slipping import check_probability, landings
-from blocks_planning.search.kernels import breadth_first
+from blocks_planning.search.kernels import lookahead
 from blocks_planning.search.kernels.slipping import Plans, evaluate, follow_plans, plan_ahead
 from blocks_planning.search.reachable import (
     MAX_STATES,
@@ -251,7 +251,7 @@ def _plan(
     )
     plans.wanted[reachable.number(reachable.problem.built)] = 1
     rising = np.ascontiguousarray(reachable.falling[::-1])
-    memory = breadth_first.make_search(tables, search.depth)
+    memory = lookahead.make_search(tables, search.depth)
     done = written = 0
     while done < len(rising):
         report('plans', done, len(rising))

@@ -9,10 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Protocol
 
-from blocks_planning.board.geometry import Mask
+from blocks_planning.board.geometry import MAX_SIDE, Mask
 from blocks_planning.board.task import Task
 from blocks_planning.families import Registry
-from blocks_planning.settings import Configured
+from blocks_planning.settings import Configured, setting
+from blocks_planning.subgoals.rectangles import rectangles
+
+MAX_CELLS = MAX_SIDE * MAX_SIDE
 
 
 class Label(NamedTuple):
@@ -79,7 +82,29 @@ class Rows(Configured):
         return regions
 
 
-REGIONS = Registry('regions', 'blocks_planning.regions', (Rows,))
+@dataclass(frozen=True)
+class Rectangles(Configured):
+    """The target cells inside a rectangle; see :mod:`.rectangles` for which ones count."""
+
+    name: ClassVar[str] = 'rectangles'
+    min_cells: int = setting(
+        2, 'Fewest target cells of a rectangle.', least=1, most=MAX_CELLS, unit='cells'
+    )
+    max_cells: int = setting(
+        0,
+        'Most target cells of a rectangle; 0: three quarters of the silhouette.',
+        least=0,
+        most=MAX_CELLS,
+        unit='cells',
+    )
+
+    def regions(self, task: Task, built: Mask) -> list[Region]:
+        """See :class:`RegionFamily`. By rising row, column, height and width."""
+        found = rectangles(task, built, self.min_cells, self.max_cells)
+        return [Region(Label(*label), cells) for label, cells in found]
+
+
+REGIONS = Registry('regions', 'blocks_planning.regions', (Rows, Rectangles))
 
 
 def rows_label(height: int) -> Label:

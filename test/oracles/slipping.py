@@ -112,6 +112,8 @@ def look_ahead(task: Task, state: Cells, depth: int) -> list[tuple[Placement, Pa
         generated.extend(level)
     if not generated:
         return []
-    votes = Counter(node.path[0] for node in best_nodes(task, generated))
+    votes = Counter(
+        node.path[0] for node in best_nodes(task, generated, worth_with_dead_ends_last)
+    )
     total = sum(votes.values())
     return [(order, (), Fraction(votes[order], total)) for order in votes]

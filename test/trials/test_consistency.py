@@ -13,14 +13,9 @@ from blocks_planning.board.blocks import Placed
 from blocks_planning.subgoals.decision import Query
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind
 from blocks_planning.trials.consistency import Consistency, Contradiction
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import (
-    Message,
-    SearchAnswer,
-    SearchRequest,
-    SubgoalChosen,
-    WorldState,
-)
+from blocks_planning.trials.messages import Message, SearchAnswer, SearchRequest, WorldState
 from blocks_planning.trials.status import TrialStatus
 
 TRIAL = spec(CHAIR, lam=0.2, depth=2, commit='action')

@@ -20,12 +20,12 @@ from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials import selector
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
     SearchAnswer,
-    SubgoalChosen,
     TrialStarted,
     WorldState,
 )

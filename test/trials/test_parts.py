@@ -477,7 +477,7 @@ def test_scribe_ends_a_trial_that_the_world_can_not_go_on_with() -> None:
     failed = PlacementOutcome(TRIAL.trial_id, 1, None, 'the arm is broken', PlacementCode.FAILED)
     for stale in (replace(failed, sequence=0), replace(failed, sequence=2)):
         assert scribe.step(memory, stale) == (memory, ())
-    assert scribe.step(memory, replace(failed, failed=False)) == (memory, ())
+    assert scribe.step(memory, replace(failed, code=PlacementCode.IMPOSSIBLE)) == (memory, ())
     memory, said = scribe.step(memory, failed)
     record = memory.record()
     assert (record.status, record.reason) == (TrialStatus.CANCELLED, 'the arm is broken')

@@ -13,7 +13,8 @@ from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.decision import Decision, Subgoal
 from blocks_planning.subgoals.regions import Region, rows_label
 from blocks_planning.subgoals.registry import make_strategy
-from blocks_planning.trials.messages import SubgoalChosen, TrialStarted
+from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.messages import TrialStarted
 from blocks_planning.trials.record import DecisionRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.view import board as view_board

@@ -7,7 +7,7 @@ from builders import row_regions
 
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.subgoals.decision import Candidate, Decision
-from blocks_planning.trials.messages import SubgoalChosen
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.record import DecisionRecord
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view import palette

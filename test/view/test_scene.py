@@ -12,14 +12,9 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.registry import STRATEGIES, make_strategy
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import (
-    Message,
-    SubgoalChosen,
-    TrialEnded,
-    TrialStarted,
-    WorldState,
-)
+from blocks_planning.trials.messages import Message, TrialEnded, TrialStarted, WorldState
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus

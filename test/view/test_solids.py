@@ -14,8 +14,8 @@ from blocks_planning.search.result import SolveStatus
 from blocks_planning.subgoals.decision import Candidate, Decision, Subgoal
 from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.regions import Region, rows_label
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import SubgoalChosen
 from blocks_planning.trials.record import DecisionRecord
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view import palette

@@ -10,7 +10,7 @@ import numpy as np
 
 from blocks_planning.analysis.behaviour.shares import Tally, estimate_gain, estimate_share
 from blocks_planning.people.data import Build, tasks
-from blocks_planning.people.families import FAMILIES, find_family
+from blocks_planning.people.families import family_names, find_family
 from blocks_planning.people.orders import MEASURES, Count, Describer, perfect, shuffled
 
 SEED = 20211001
@@ -28,7 +28,7 @@ LABELS = {
 
 def compare_building(
     groups: Mapping[str, Sequence[Build]],
-    families: Iterable[str] = tuple(FAMILIES),
+    families: Iterable[str] = family_names(),
     seed: int = SEED,
 ) -> list[dict[str, Any]]:
     """Every measure for every group of builders.

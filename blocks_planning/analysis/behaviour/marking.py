@@ -12,7 +12,7 @@ from blocks_planning.analysis.behaviour.shares import Tally, estimate_share
 from blocks_planning.board.geometry import Mask, area
 from blocks_planning.board.task import Task
 from blocks_planning.people.data import Marking, tasks
-from blocks_planning.people.families import FAMILIES, Family, find_family
+from blocks_planning.people.families import Family, family_names, find_family
 from blocks_planning.people.orders import Count
 from blocks_planning.people.parts import grown_part, is_region, pieces
 
@@ -20,7 +20,7 @@ SEED = 20211002
 
 
 def compare_parts(
-    markings: Sequence[Marking], families: Iterable[str] = tuple(FAMILIES), seed: int = SEED
+    markings: Sequence[Marking], families: Iterable[str] = family_names(), seed: int = SEED
 ) -> dict[str, Any]:
     """The share of marked parts that is a region of each family.
 

@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 from builders import CHAIR, NEVER_SOLVED, spec
 
-from blocks_planning.trials.messages import ProposalMade, SubgoalChosen, TrialStarted
+from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.messages import ProposalMade, TrialStarted
 from blocks_planning.view.scene import last_scene, scenes_of
 from blocks_planning.view.web import pictures
 from blocks_planning.view.web.frame import Seen, frame_json

@@ -10,7 +10,8 @@ import pytest
 from builders import CHAIR, task
 
 from blocks_planning.subgoals.proposals import ProposalKind, target_of
-from blocks_planning.trials.messages import ProposalMade, SubgoalChosen
+from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.messages import ProposalMade
 from blocks_planning.view.web.pictures import rows_of
 from blocks_planning.view.web.proposing import (
     MalformedProposal,

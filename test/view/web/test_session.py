@@ -10,11 +10,11 @@ import pytest
 from builders import CHAIR, spec
 
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
     SearchAnswer,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
