@@ -67,9 +67,9 @@ class MySearcher(rclpy.node.Node):
         chosen = subgoal.decisions[-1].subgoals[subgoal.decisions[-1].executed - 1]
         done = state.sequence - subgoal.sequence
         if 0 <= done < chosen.execute:
-            block, column = chosen.placements[done].block, chosen.placements[done].column
             action = msg.PlaceBlock(trial_id=state.trial_id, sequence=state.sequence)
-            action.block, action.column = block, column
+            placement = chosen.placements[done]
+            action.block, action.column = placement.block, placement.column
             self.action.publish(action)
 
 

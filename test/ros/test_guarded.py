@@ -175,8 +175,9 @@ def test_goal_whose_caller_is_gone_keeps_nobody_out(graph: Graph, tmp_path: Path
     class Goal:
         trial = spec_to_ros('', TRIAL_SPEC)
 
-    assert node._judge_goal(Goal()) is GoalResponse.ACCEPT
-    assert node._judge_goal(Goal()) is GoalResponse.ACCEPT
+    judge = node._goals._server._goal_callback
+    assert [judge(Goal()), judge(Goal())] == [GoalResponse.ACCEPT] * 2
+    assert not node._goals.is_busy
 
 
 def test_inbox_is_bounded_by_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -202,12 +203,14 @@ def test_searcher_takes_on_no_more_than_it_can(monkeypatch: pytest.MonkeyPatch) 
     memory, _ = searcher.step(searcher.Memory(), STARTED)
     asked: list[Message] = []
     for cells in range(9):
-        memory, said = searcher.step(memory, SearchRequest(TRIAL_SPEC.trial_id, Query(0, cells)))
+        memory, said = searcher.step(
+            memory, SearchRequest(TRIAL_SPEC.trial_id, (Query(0, cells),))
+        )
         asked += said
     assert len(asked) == 5
     result = next(m.result for m in HEARD if isinstance(m, SearchAnswer))
     for solve in asked:
         assert isinstance(solve, Solve)
         memory, _ = searcher.step(memory, SearchAnswer(solve.trial_id, solve.query, result))
-    assert [query.region for query in memory.known] == [2, 3, 4]
+    assert [query.target for query in memory.known] == [2, 3, 4]
     assert not memory.solving

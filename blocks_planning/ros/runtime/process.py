@@ -75,8 +75,8 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
             signal.signal(number, lambda received, _: _on_signal(stop, received))
         node = make_node(stop)
         made.append(node.get_fully_qualified_name())
-        node.get_logger().info('ready')
         claim = claim_name(node.context.get_domain_id(), node.get_fully_qualified_name())
+        node.get_logger().info('ready')
     except (BlocksPlanningError, ParameterException, NameValidationException) as error:
         sys.stderr.write(f'Error: {" ".join(str(error).split())}\n')
         _leave(BAD_INPUT)
