@@ -137,6 +137,11 @@ class Strategy(Protocol):
     asks_person: ClassVar[bool]
 
     @property
+    def is_blind(self) -> bool:
+        """Whether a plan is carried out to its end, whatever is observed meanwhile."""
+        ...
+
+    @property
     def hides_costs(self) -> bool:
         """Whether planning costs must not be shown while a trial runs."""
         ...

@@ -40,6 +40,11 @@ class Planner(Configured):
     asks_person: ClassVar[bool] = False
 
     @property
+    def is_blind(self) -> bool:
+        """See :class:`Strategy`."""
+        return False
+
+    @property
     def hides_costs(self) -> bool:
         """Whether planning costs must not be shown while a trial runs."""
         return False

@@ -52,10 +52,15 @@ class RegionFamily(Protocol):
 
     name: ClassVar[str]
 
-    def regions(self, task: Task, built: Mask) -> list[Region]:
+    def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
         """The regions that can come next in a state, in the order in which ties are drawn.
 
         Each adds at least one cell to the state. No two of them have the same target.
+
+        Args:
+            task: the silhouette, of which every cell that is not built can still be filled.
+            built: the filled cells.
+            partial: whether a region may leave out cells that are built.
         """
         ...
 
@@ -66,19 +71,21 @@ class Rows(Configured):
 
     name: ClassVar[str] = 'rows'
 
-    def regions(self, task: Task, built: Mask) -> list[Region]:
+    def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
         """The different regions that strictly contain the state, the lowest first.
 
         Of several heights with the same region the lowest is listed. The last region is the whole
-        silhouette, unless the state has a cell outside it: then there is none.
+        silhouette, unless the state has a cell outside it: then there is none. With ``partial``
+        every height counts below which the state lacks a cell.
         """
         regions: list[Region] = []
-        previous = 0
+        listed = built
         for height in range(1, task.board.height + 1):
             cells = task.rows(height)
-            if cells != previous and cells != built and not built & ~cells:
+            target = built | cells
+            if target != listed and (partial or target == cells):
                 regions.append(Region(rows_label(height), cells))
-            previous = cells
+                listed = target
         return regions
 
 
@@ -98,7 +105,7 @@ class Rectangles(Configured):
         unit='cells',
     )
 
-    def regions(self, task: Task, built: Mask) -> list[Region]:
+    def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
         """See :class:`RegionFamily`. By rising row, column, height and width."""
         found = rectangles(task, built, self.min_cells, self.max_cells)
         return [Region(Label(*label), cells) for label, cells in found]

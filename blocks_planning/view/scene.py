@@ -16,7 +16,7 @@ from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Mask
 from blocks_planning.board.task import Task
 from blocks_planning.subgoals.decision import Decision, Subgoal
-from blocks_planning.trials.execution import Progress, Span, SubgoalChosen, spans_of
+from blocks_planning.trials.execution import Progress, Span, SubgoalChosen, history, spans_of
 from blocks_planning.trials.messages import (
     Message,
     TrialEnded,
@@ -27,7 +27,7 @@ from blocks_planning.trials.messages import (
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
-from blocks_planning.worlds.observation import Observation, Observations, states_of
+from blocks_planning.worlds.observation import Observation, Observations
 
 FOUND = -1
 """The subgoal of a block that no subgoal placed: it stood at the start, or appeared by itself."""
@@ -95,8 +95,8 @@ class Scene:
         """How far the current subgoal has been executed; None if there is none yet."""
         if self.subgoal is None or self.chosen is None or self.chosen.sequence > self.sequence:
             return None
-        board = self.task.board
-        return self.chosen.progress(board, states_of(board, self.observations) or [0])
+        seen = history(self.task.board, self.observations or (Observation(),))
+        return self.chosen.progress(self.spec, seen)
 
     @cached_property
     def landed(self) -> tuple[BuiltBlock, ...]:

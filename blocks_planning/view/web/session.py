@@ -21,6 +21,7 @@ from blocks_planning.subgoals.proposals import (
     proposed_at,
     target_of,
 )
+from blocks_planning.trials.execution import history
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
@@ -33,7 +34,6 @@ from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view.captions import shortlist
 from blocks_planning.view.scene import Scene, first_scene, scene_after
-from blocks_planning.worlds.observation import states_of
 
 MOST_PAST = 500
 """Trials that ran and can be replayed; the oldest go first."""
@@ -233,5 +233,5 @@ def _is_executing(scene: Scene, state: WorldState) -> bool:
         return True
     if chosen.sequence > state.sequence:
         return True
-    board = scene.task.board
-    return chosen.progress(board, states_of(board, state.observations)).is_open
+    seen = history(scene.task.board, state.observations)
+    return chosen.progress(scene.spec, seen).is_open
