@@ -10,7 +10,7 @@ from blocks_planning.board.blocks import Block
 from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.errors import ConfigurationError, InvalidInput, LimitExceeded
-from blocks_planning.search import compiled
+from blocks_planning.search import memory
 from blocks_planning.search.result import CancelToken, Problem, SolveResult, SolveStatus
 from blocks_planning.search.searches import SEARCHES, AStar, BreadthFirst, make_search
 from blocks_planning.search.solve import solve
@@ -90,13 +90,13 @@ def test_the_queue_grows_without_a_trace(iterations: int, monkeypatch: pytest.Mo
     problem = Problem(Task(board, board.full, (Block(1, 2), Block(2, 1))), 0, board.full)
     search = AStar(iterations, 'largest', 'path')
     expected = solve(problem, search, 1, 0)
-    monkeypatch.setattr(compiled, '_MOST_NODES_AT_FIRST', 300)
+    monkeypatch.setattr(memory, '_MOST_NODES_AT_FIRST', 300)
     assert solve(problem, search, 1, 0) == expected
 
 
 def test_a_queue_over_its_limit_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiled, '_MOST_NODES_AT_FIRST', 300)
-    monkeypatch.setattr(compiled, 'MAX_NODES', 5_000)
+    monkeypatch.setattr(memory, '_MOST_NODES_AT_FIRST', 300)
+    monkeypatch.setattr(memory, 'MAX_NODES', 5_000)
     board = Board(9, 9)
     problem = Problem(Task(board, board.full, (Block(1, 2), Block(2, 1))), 0, board.full)
     search = AStar(5_000, 'largest', 'path')
