@@ -177,7 +177,7 @@ def test_options_reach_the_record(run: Run, towers: str) -> None:
 @pytest.mark.parametrize(
     ('strategy', 'search', 'expected'),
     [
-        ('none', 'bfs', (None, {'depth': 3})),
+        ('none', 'bfs', (None, {'depth': 3, 'dead_ends': 'worst'})),
         ('scoping', 'random', (0.002, {})),
         ('full', 'exact', (1.0, {})),
         ('none', 'best_first', (None, {'iterations': 4096, 'execute': 'first'})),

@@ -38,6 +38,12 @@ SETTINGS: dict[str, list[dict[str, Any]]] = {
         for iterations in (2, 30)
         for execute in ('first', 'path')
     ],
+    'beam': [{'width': width} for width in (1, 2, 3, 10, 50)],
+    'mcts': [
+        {'iterations': iterations, 'exploration': exploration}
+        for iterations in (1, 5, 60)
+        for exploration in (0.0, 0.5, 3.0)
+    ],
 }
 """The settings with which each search is held to its twin."""
 OTHERWISE = {'exact'}

@@ -76,7 +76,8 @@ def test_order_is_strategies_searches_stimuli_seeds(tmp_path: Path) -> None:
         ('none', None, None),
         *(('scoping', lam, commit) for lam in (0.0, 0.5, 1.0) for commit in ('action', 'subgoal')),
     ]
-    searches = [('random', {}), ('bfs', {'depth': 3}), ('bfs', {'depth': 1})]
+    bfs = {'dead_ends': 'worst'}
+    searches = [('random', {}), ('bfs', {'depth': 3, **bfs}), ('bfs', {'depth': 1, **bfs})]
     expected = list(product(strategies, searches, ('cogsci2021/9', 'cogsci2021/2'), (7, 8), [500]))
     found = []
     for trial in trials:

@@ -21,7 +21,14 @@ import numpy as np
 
 from blocks_planning.board.geometry import MAX_SIDE
 from blocks_planning.board.kernels.compiling import inlined
-from blocks_planning.board.kernels.masks import is_empty, load, lowest, store, without_lowest
+from blocks_planning.board.kernels.masks import (
+    count,
+    is_empty,
+    load,
+    lowest,
+    store,
+    without_lowest,
+)
 from blocks_planning.board.kernels.moves import Tables, has_move, legal_moves
 
 COMPLETE_VALUE = 1 << 30
@@ -67,15 +74,15 @@ def make_search(tables: Tables, depth: int, dead_ends_last: bool = True) -> Brea
 
 
 @inlined
-def _vote(search, value, depth, first):
-    """Count a tree node if none seen so far is better."""
+def _vote(search, value, depth, first, number):
+    """Count so many tree nodes of a value if none seen so far is better."""
     if value > search.best[0]:
         search.best[0] = value
         for level in range(search.depth):
             for other in range(search.firsts[0]):
                 search.votes[level, other] = 0
     if value == search.best[0]:
-        search.votes[depth - 1, first] += 1
+        search.votes[depth - 1, first] += number
 
 
 @inlined
@@ -84,18 +91,23 @@ def _vote_for_last_level(search, tables, shadow, filled, first):
     depth, blocks = search.depth, tables.area.size
     child = 0
     for block in range(blocks):
-        reached = filled + tables.area[block]
         places = load(search.moves, (depth - 1) * blocks + block)
-        can_win = reached == tables.target or reached >= search.best[0]
+        reached = filled + tables.area[block]
+        is_complete = reached == tables.target
+        children = count(places)
+        if children == 0 or not (is_complete or reached >= search.best[0]):
+            child += children
+            continue
+        value = COMPLETE_VALUE if is_complete else reached
+        if depth > 1 and (is_complete or not search.dead_ends_last):
+            _vote(search, value, depth, first, children)
+            continue
         while not is_empty(places):
-            if can_win:
-                value = COMPLETE_VALUE
-                if reached != tables.target:
-                    move = block * tables.cells + lowest(places)
-                    child_shadow = shadow | load(tables.shadow, move)
-                    is_last = search.dead_ends_last and not has_move(tables, child_shadow)
-                    value = _DEAD_END if is_last else reached
-                _vote(search, value, depth, child if depth == 1 else first)
+            if search.dead_ends_last and not is_complete:
+                move = block * tables.cells + lowest(places)
+                alive = has_move(tables, shadow | load(tables.shadow, move))
+                value = reached if alive else _DEAD_END
+            _vote(search, value, depth, child if depth == 1 else first, 1)
             child += 1
             places = without_lowest(places)
 
@@ -114,7 +126,7 @@ def take_up(search, tables, level, shadow, filled, first):
         search.firsts[0] = children
     else:
         is_last = search.dead_ends_last and children == 0
-        _vote(search, _DEAD_END if is_last else filled, level, first)
+        _vote(search, _DEAD_END if is_last else filled, level, first, 1)
     if level == search.depth - 1:
         _vote_for_last_level(search, tables, shadow, filled, first)
     return children
