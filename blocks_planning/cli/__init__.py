@@ -12,6 +12,7 @@ from typing import NoReturn
 import click
 
 from blocks_planning import __version__
+from blocks_planning.cli.fitting import fit
 from blocks_planning.cli.graph import run
 from blocks_planning.cli.inspecting import count, draw, exact, stimuli, verify
 from blocks_planning.cli.reproducing import exact_policy, growth, reproduce
@@ -49,6 +50,7 @@ for command in (
     sweep,
     reproduce,
     growth,
+    fit,
 ):
     commands.add_command(command)
 
