@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fitting.made_up import MadeUp, points
+from made_up_options import MadeUp, points
 from oracles.likelihood import probability
 
 from blocks_planning.errors import ConfigurationError

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+from itertools import pairwise
 from pathlib import Path
 
 import builders
@@ -103,7 +104,7 @@ def test_simulated_participant_builds_what_can_be_built() -> None:
     assert [point.tower for point in points].count('never') == 1
     chair = [point for point in points if point.tower == 'chair']
     assert chair[0].built == 0
-    for before, after in zip(chair, chair[1:], strict=False):
+    for before, after in pairwise(chair):
         assert after.built in (before.built, before.built | before.cells)
     assert len(choice_set(points, maker)) == len(points)
 
