@@ -14,6 +14,7 @@ import click
 
 from blocks_planning import __version__
 from blocks_planning.cli.counting import count, exact
+from blocks_planning.cli.fitting import fit
 from blocks_planning.cli.graph import run
 from blocks_planning.cli.inspecting import draw, verify
 from blocks_planning.cli.progress import LIMIT_REACHED
@@ -53,6 +54,7 @@ for command in (
     sweep,
     reproduce,
     growth,
+    fit,
 ):
     commands.add_command(command)
 

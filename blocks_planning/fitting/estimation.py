@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq, minimize
@@ -121,8 +122,14 @@ def _maximise(
         for start in ([[near[name] for name in free]] if near else _grid(free))
     ]
     starts = sorted(starts, key=badness)[:_STARTS_FOLLOWED]
-    ends = [minimize(badness, start, method='L-BFGS-B', bounds=bounds) for start in starts]
+    ends = [_descend(badness, start, bounds) for start in starts]
     return values_at(min(ends, key=lambda end: end.fun).x)
+
+
+def _descend(badness: Callable[[np.ndarray], float], start: np.ndarray, bounds: Any) -> Any:
+    """The lowest place near a start. With so few parameters no gradient is needed."""
+    tolerance = {'xatol': 1e-4, 'fatol': 1e-6, 'maxiter': 1000, 'adaptive': False}
+    return minimize(badness, start, method='Nelder-Mead', bounds=bounds, options=tolerance)
 
 
 def _grid(names: list[str]) -> list[tuple[float, ...]]:

@@ -56,6 +56,10 @@ class Chooser:
         option = options[min(int(place), len(options) - 1)]
         return option.cells, option
 
+    def can_go_on(self, point: ChoicePoint) -> bool:
+        """Whether any option of the state of a point can be built."""
+        return bool(self._options(point)[0])
+
     def _options(self, point: ChoicePoint) -> tuple[list[Option], np.ndarray]:
         """The options with a value, and how likely each is without a lapse."""
         key = point.task, point.built, point.asking
@@ -84,7 +88,7 @@ def roll_out(
     """The choices of a simulated participant who rebuilds some towers, by name.
 
     A chosen region that can be built is built, by the plan of its solve. A trial ends when the
-    silhouette is complete, nothing can be drawn, or ``MOST_CHOICES`` were made.
+    silhouette is complete, no option can be built, or ``MOST_CHOICES`` were made.
     """
     points = []
     for tower, task in towers.items():
@@ -95,11 +99,7 @@ def roll_out(
             point = ChoicePoint(session, tower, task, built, 0, asking)
             cells, option = chooser.choose(point)
             points.append(point._replace(cells=cells))
-            if option is None and not _any_left(chooser, point):
+            if not chooser.can_go_on(point):
                 break
             built |= option.cells if option else 0
     return points
-
-
-def _any_left(chooser: Chooser, point: ChoicePoint) -> bool:
-    return bool(chooser._options(point)[0])  # noqa: SLF001
