@@ -2,7 +2,7 @@
 
 ::
 
-    cli  ->  ros  ->  view | experiments | analysis  ->  trials  ->  subgoals  ->  search
+    cli  ->  ros  ->  view | experiments | analysis  ->  towers  ->  trials  ->  subgoals  ->  search
          ->  board  ->  families  ->  located | resources | settings  ->  errors
 """
 
@@ -21,6 +21,7 @@ LAYERS = [
     {'search'},
     {'subgoals'},
     {'trials'},
+    {'towers'},
     {'view', 'experiments', 'analysis'},
     {'ros'},
     {'cli'},

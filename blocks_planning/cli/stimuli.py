@@ -7,6 +7,7 @@ import click
 from blocks_planning.board.pictures import read_file
 from blocks_planning.board.stimuli import installed_sets
 from blocks_planning.cli.importing import import_towers
+from blocks_planning.cli.making import make_command
 from blocks_planning.cli.options import find_all, stimuli_argument
 
 
@@ -33,3 +34,4 @@ def show(addresses: tuple[str, ...]) -> None:
 
 
 stimuli.add_command(import_towers)
+stimuli.add_command(make_command)

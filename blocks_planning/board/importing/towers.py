@@ -82,13 +82,16 @@ def import_file(path: Path, reading: Reading | None = None) -> list[Imported]:
         StimulusError: naming file, key or line, and value, if the file can't be read, has an
             ending that is not known, or has no silhouettes in it.
     """
-    reading = reading or Reading()
+    return import_text(read_text(path), path, reading or Reading())
+
+
+def import_text(text: str, path: Path, reading: Reading) -> list[Imported]:
+    """The silhouettes of the text of a file; see :func:`import_file`."""
     suffix = suffix_of(path)
     if suffix not in SUFFIXES:
         raise StimulusError(
             f'{path}: the name must end in one of {", ".join(SUFFIXES)}, got {suffix or "none"}'
         )
-    text = read_text(path)
     if suffix == '.json':
         found = list(_from_json(parse_json(text, str(path)), path.stem, str(path), reading, 0))
     elif suffix == '.txt':

@@ -17,6 +17,7 @@ from blocks_planning.board.importing.towers import (
     Imported,
     Reading,
     import_file,
+    import_text,
     with_different_names,
 )
 from blocks_planning.errors import StimulusError
@@ -31,10 +32,17 @@ BLOCKS = {
 
 
 def read(folder: Path, name: str, content: Any, reading: Reading | None = None) -> list[Imported]:
-    """The towers of a file that is written first."""
+    """The towers of a file whose text is given."""
     text = content if isinstance(content, str) else json.dumps(content)
-    (folder / name).write_text(text, encoding='utf-8')
-    return import_file(folder / name, reading)
+    return import_text(text.removeprefix('\ufeff'), folder / name, reading or Reading())
+
+
+def test_a_file_is_read_with_its_byte_order_mark(tmp_path: Path) -> None:
+    path = tmp_path / 'a.csv'
+    path.write_text('\ufeff1,0\n1,1\n', encoding='utf-8')
+    assert silhouettes(import_file(path)) == [('a', STEP)]
+    with pytest.raises(StimulusError, match='cannot be read'):
+        import_file(tmp_path / 'b.csv')
 
 
 def silhouettes(towers: list[Imported]) -> list[tuple[str, tuple[Board, Mask]]]:
@@ -186,10 +194,8 @@ def test_a_block_off_the_board_is_refused_where_margins_stay(tmp_path: Path) -> 
 
 
 @given(st.data())
-def test_every_form_gives_back_what_was_written(
-    tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
-) -> None:
-    folder = tmp_path_factory.getbasetemp()
+def test_every_form_gives_back_what_was_written(data: st.DataObject) -> None:
+    folder = Path()
     board = data.draw(boards())
     mask = data.draw(st.integers(1, board.full))
     filled = dict.fromkeys(board.cells(mask), True)
@@ -218,9 +224,9 @@ def test_every_form_gives_back_what_was_written(
     lambda inner: st.lists(inner, max_size=3)
     | st.dictionaries(st.sampled_from(['blocks', 'x', 'y', 'width', 'height', '\n']), inner, max_size=5),
 ).map(json.dumps))  # fmt: skip
-def test_any_text_is_read_or_refused(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
+def test_any_text_is_read_or_refused(text: str) -> None:
     for name in ('any.json', 'any.csv'):
-        for tower in read_or_refused(tmp_path_factory.getbasetemp(), name, text):
+        for tower in read_or_refused(Path(), name, text):
             assert tower.silhouette
 
 
