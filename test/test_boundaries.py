@@ -2,9 +2,9 @@
 
 ::
 
-    cli  ->  ros  ->  view | experiments | analysis  ->  fitting  ->  people  ->  trials  ->  worlds
-         ->  subgoals  ->  search  ->  board  ->  families  ->  located | resources | settings
-         ->  errors
+    cli  ->  ros  ->  view | experiments | analysis  ->  fitting  ->  people | towers  ->  trials
+         ->  worlds  ->  subgoals  ->  search  ->  board  ->  families
+         ->  located | resources | settings  ->  errors
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ LAYERS = [
     {'subgoals'},
     {'worlds'},
     {'trials'},
-    {'people'},
+    {'people', 'towers'},
     {'fitting'},
     {'view', 'experiments', 'analysis'},
     {'ros'},

@@ -6,7 +6,7 @@ import json
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -19,6 +19,7 @@ from blocks_planning.cli.options import (
 )
 from blocks_planning.cli.progress import LIMIT_REACHED, Job, bar, each, time_limit_option
 from blocks_planning.cli.sweeping import out_option, print_summary, workers_option
+from blocks_planning.errors import ConfigurationError
 from blocks_planning.search.result import DEFAULT_BUDGET
 
 if TYPE_CHECKING:
@@ -88,13 +89,23 @@ def growth(out: Path, towers: int, seeds: int, largest: int, workers: int | None
 
     Writes growth.json with fits, figures/growth.svg and .png, and the tables of all trials.
     """
-    from blocks_planning.analysis.growth import growth_figure, growth_table, read_growth
+    from blocks_planning.analysis.growth import (
+        LEAST_SIDES,
+        growth_figure,
+        growth_table,
+        read_growth,
+    )
     from blocks_planning.analysis.style import save_figure
     from blocks_planning.experiments.growth import SIDES, growth_sweep
     from blocks_planning.experiments.running import default_workers
     from blocks_planning.experiments.sweeping import run_sweep
 
     sides = tuple(side for side in SIDES if side <= largest)
+    if len(sides) < LEAST_SIDES:
+        raise ConfigurationError(
+            f'--largest {largest}: leaves the sizes {", ".join(map(str, sides))}, and a law needs '
+            f'at least {LEAST_SIDES}; use {SIDES[LEAST_SIDES - 1]} or more'
+        )
     with bar('Trials') as report:
         summary = run_sweep(
             growth_sweep(towers, seeds, sides),
@@ -107,13 +118,15 @@ def growth(out: Path, towers: int, seeds: int, largest: int, workers: int | None
     path = save_figure(growth_figure(rows, DEFAULT_BUDGET), out / 'figures', 'growth')
     print_summary(summary, out / 'sweep')
     for row in rows:
-        fit = row['fit']
-        click.echo(
-            f'{row["way"]:6} {row["strategy"]:8} {fit["law"]:11} {fit["base"]:6.2f} '
-            f'(R2 {fit["r2"]:.2f})'
-        )
+        click.echo(f'{row["way"]:6} {row["strategy"]:8} {_law_of(row["fit"])}')
     click.echo(f'{path}: written')
     return int(summary.failed > 0)
+
+
+def _law_of(fit: dict[str, Any] | None) -> str:
+    if fit is None:
+        return 'no law: fewer than 3 sizes have a cost'
+    return f'{fit["law"]:11} {fit["base"]:6.2f} (R2 {fit["r2"]:.2f})'
 
 
 @click.command(

@@ -6,6 +6,8 @@ import click
 
 from blocks_planning.board.pictures import read_file
 from blocks_planning.board.stimuli import installed_sets
+from blocks_planning.cli.importing import import_towers
+from blocks_planning.cli.making import make_command
 from blocks_planning.cli.options import find_all, stimuli_argument
 
 
@@ -29,3 +31,7 @@ def show(addresses: tuple[str, ...]) -> None:
     """Draw silhouettes."""
     for index, stimulus in enumerate(find_all(addresses)):
         click.echo('\n' * bool(index) + f'# {stimulus.name}\n\n{stimulus.draw()}')
+
+
+stimuli.add_command(import_towers)
+stimuli.add_command(make_command)
