@@ -38,11 +38,18 @@ def mark_of(*path: object) -> Mark | None:
 
 def style_of(kind: Kind, colour: str) -> dict[str, Any]:
     """How a mark is drawn."""
-    face = colour if kind is Kind.PRINTED else 'white'
-    return {'marker': SHAPE, 'mfc': face, 'mec': 'black', 'ms': 6, 'mew': 0.9, 'ls': 'none'}
+    printed = kind is Kind.PRINTED
+    return {
+        'marker': SHAPE,
+        'mfc': colour if printed else 'white',
+        'mec': 'black' if printed else colour,
+        'mew': 0.9 if printed else 1.6,
+        'ms': 6,
+        'ls': 'none',
+    }
 
 
-def legend_handles(ax: Any, colour: str = '#bbbbbb') -> list[Any]:
+def legend_handles(ax: Any, colour: str = '#777777') -> list[Any]:
     """A mark of each kind for a legend."""
     return [
         ax.plot([], [], label=label, **style_of(kind, colour))[0] for kind, label in LABELS.items()

@@ -29,6 +29,9 @@ _UNITS = {
     'subgoal_planning_cost': (1e6, 'million states'),
 }
 
+_LOWEST = {'action_planning_cost': -4, 'subgoal_planning_cost': -1}
+"""Lower ends of the axes, in their units: dots at 0 and what is written below them are whole."""
+
 
 def figure_2(presets: dict[str, Results]) -> Figure:
     """Cost against success, one dot a planner: action (A) and subgoal planning cost (B)."""
@@ -42,8 +45,8 @@ def figure_2(presets: dict[str, Results]) -> Figure:
                 _, unit = _UNITS[cost]
                 ax.set_ylabel(f'{MEASURE_LABELS[cost].splitlines()[0]}\n[{unit}]')
                 ax.set_xlabel('perfect reconstruction [share of runs]')
-                ax.set_xlim(0, 1.04)
-                ax.set_ylim(bottom=0 if cost == _COSTS[0] else -0.4)
+                ax.set_xlim(0, 1.06)
+                ax.set_ylim(bottom=_LOWEST[cost])
                 ax.set_title(f'{letter}  {preset}')
         figure.legend(handles=_legend(axes[0][0]), loc='outside lower center', ncols=4)
     return figure
@@ -84,9 +87,10 @@ def _paper_dot(ax: Any, search: str, strategy: str, cost: str) -> None:
     ax.annotate(
         SEARCH_NAMES[search],
         (success.value, value),
-        xytext=(0, 6),
+        xytext=(0, 6 if search == 'astar' else -6),  # so that neighbours are told apart
         textcoords='offset points',
         ha='center',
+        va='bottom' if search == 'astar' else 'top',
         fontsize=7,
     )
 

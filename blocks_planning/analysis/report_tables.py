@@ -21,7 +21,7 @@ def table_1_rows(presets: dict[str, Any]) -> list[dict[str, Any]]:
     rows = []
     for preset, results in presets.items():
         for row in results['table1']:
-            if row['search'] == 'random' and rows:
+            if row['search'] == 'random' and any(there['search'] == 'random' for there in rows):
                 continue
             settings = {key: row[key] for key in ('depth', 'iterations') if key in row}
             of = {'search': row['search'], **settings}

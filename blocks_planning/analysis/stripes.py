@@ -14,10 +14,10 @@ from blocks_planning.analysis.trials import planners_of
 
 _ACROSS = 8
 """Towers in a row of the figure."""
-_PIXELS = 128
-"""Columns of a panel for scoping; each shows one attempt."""
-_FULL_PIXELS = 24
+_WIDTHS = {'scoping': 128, 'full': 24}
+"""Stripes of a panel; each shows one attempt."""
 _GAP = 4
+_BLANK = -1
 _NOT_BUILT = 0.93
 
 
@@ -54,24 +54,30 @@ def figure_3(trials: pd.DataFrame, decisions: pd.DataFrame, preset: str) -> Figu
 def _stripes(
     trials: pd.DataFrame, decisions: pd.DataFrame, highest: int
 ) -> dict[tuple[str, str], np.ndarray]:
-    """By tower and strategy: the number of the subgoal of each row, (attempts, rows), 0 for none."""
-    chosen = trials[trials['strategy'].isin(['scoping', 'full'])]
-    chosen = chosen[['trial_id', 'stimulus', 'strategy', 'lambda', 'seed']].copy()
-    chosen = chosen.sort_values(['lambda', 'seed'])
-    made = decisions[decisions['executed'] > 0].sort_values('decision')
-    made = made.assign(trial_id=made['trial_id'].astype(str))
-    made = made[made['trial_id'].isin(set(chosen['trial_id']))]
-    heights = made.groupby('trial_id', sort=False)['tops'].agg(
-        lambda rows: [height for some in rows for height in some]
-    )
-    found: dict[tuple[str, str], np.ndarray] = {}
-    for key, part in chosen.groupby(['stimulus', 'strategy'], observed=True):
-        attempts = [
-            subgoal_of_rows(heights.get(name, []), highest)
-            for name in part['trial_id'].astype(str)
-        ]
-        found[key] = np.array(attempts)
-    return found
+    """By tower and strategy: the number of the subgoal of each row, (stripes, rows), 0 for none."""
+    shown = {
+        (stimulus, strategy): _spread(part['trial_id'], _WIDTHS[strategy])
+        for (stimulus, strategy), part in trials[trials['strategy'].isin(list(_WIDTHS))]
+        .sort_values(['lambda', 'seed'])
+        .groupby(['stimulus', 'strategy'], observed=True)
+    }
+    wanted = {name for names in shown.values() for name in names}
+    made = decisions[(decisions['executed'] > 0) & decisions['trial_id'].isin(wanted)]
+    heights: dict[str, list[int]] = {}
+    for name, rows in zip(
+        *(made.sort_values('decision')[key] for key in ('trial_id', 'tops')), strict=True
+    ):
+        heights.setdefault(name, []).extend(rows)
+    return {
+        key: np.array([subgoal_of_rows(heights.get(name, []), highest) for name in names])
+        for key, names in shown.items()
+    }
+
+
+def _spread(names: pd.Series, count: int) -> list[str]:
+    """Evenly spaced ones of some names; each several times if there are fewer."""
+    places = np.linspace(0, len(names) - 1, count).round().astype(int)
+    return [str(name) for name in names.to_numpy()[places]]
 
 
 def subgoal_of_rows(heights: list[int], highest: int) -> list[int]:
@@ -92,14 +98,12 @@ def subgoal_of_rows(heights: list[int], highest: int) -> list[int]:
 
 
 def _panel(ax: Any, stripes: dict[tuple[str, str], np.ndarray], tower: str, highest: int) -> None:
-    parts = []
-    for strategy, width in (('scoping', _PIXELS), ('full', _FULL_PIXELS)):
-        attempts = stripes.get((tower, strategy))
-        if attempts is None:
-            attempts = np.zeros((1, highest), int)
-        shown = np.linspace(0, len(attempts) - 1, width).round().astype(int)
-        parts.append(attempts[shown])
-    gap = np.full((_GAP, highest), -1)
+    none = np.zeros((1, highest), int)
+    parts = [
+        stripes.get((tower, strategy), np.repeat(none, width, axis=0))
+        for strategy, width in _WIDTHS.items()
+    ]
+    gap = np.full((_GAP, highest), _BLANK)
     picture = _colours(np.concatenate([parts[0], gap, parts[1]]), highest)
     ax.set_axis_on()
     ax.imshow(picture.swapaxes(0, 1), origin='lower', aspect='auto', interpolation='nearest')

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from blocks_planning.errors import LimitExceeded
-from blocks_planning.experiments.spec import SweepSpec
 from blocks_planning.search.counting import count_task
 from blocks_planning.trials.script import Tower
 
 
-def size_table(sweep: SweepSpec, workers: int) -> list[dict[str, Any]]:
-    """The size of every tower of a sweep; see :class:`.counting.TaskSize`.
+def size_table(towers: Sequence[Tower], workers: int) -> list[dict[str, Any]]:
+    """The sizes of towers; see :class:`.counting.TaskSize`.
 
     Returns:
         A dict per tower: ``tower``, ``cells``, ``states``, ``complete_sequences`` and
@@ -19,9 +19,7 @@ def size_table(sweep: SweepSpec, workers: int) -> list[dict[str, Any]]:
     """
     from joblib import Parallel, delayed
 
-    rows: list[dict[str, Any]] = Parallel(n_jobs=workers)(
-        delayed(_row)(tower) for tower in sweep.towers
-    )
+    rows: list[dict[str, Any]] = Parallel(n_jobs=workers)(delayed(_row)(tower) for tower in towers)
     return rows
 
 
