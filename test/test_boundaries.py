@@ -3,7 +3,7 @@
 ::
 
     cli  ->  ros  ->  view | experiments | analysis  ->  trials  ->  subgoals  ->  search
-         ->  board  ->  families  ->  located | resources | settings  ->  errors
+         ->  board  ->  families  ->  extras | located | resources | settings  ->  errors
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from source_imports import PACKAGE, Source, imports, package_sources
 
 LAYERS = [
     {'errors'},
-    {'located', 'resources', 'settings'},
+    {'extras', 'located', 'resources', 'settings'},
     {'families'},
     {'board'},
     {'search'},

@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
 from blocks_planning.analysis.paper import claims
 from blocks_planning.analysis.results import STRATEGIES
@@ -20,6 +18,13 @@ from blocks_planning.analysis.style import (
     styled,
 )
 from blocks_planning.analysis.trials import planners_of
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
+with extra('figures'):
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
 
 _PAPER = {claim.path: claim.value for claim in claims() if claim.path[0] == 'planners'}
 _WIDTH = 0.26
@@ -108,8 +113,6 @@ def figure_3(trials: pd.DataFrame, decisions: pd.DataFrame, preset_names: list[s
 
 
 def _sand(index: int, count: int) -> Any:
-    import matplotlib as mpl
-
     return mpl.colormaps['cividis'](index / max(1, count - 1))
 
 

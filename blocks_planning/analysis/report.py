@@ -8,8 +8,6 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
-
 from blocks_planning.analysis.paper import claims, table_1_settings
 from blocks_planning.analysis.people import compare_people
 from blocks_planning.analysis.people_figure import people_figure
@@ -24,6 +22,10 @@ from blocks_planning.analysis.trials import (
     read_trials,
 )
 from blocks_planning.analysis.verdicts import FAILS, SAME, WITHIN, compare
+from blocks_planning.extras import extra
+
+with extra('figures'):
+    from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 VERDICTS = (WITHIN, SAME, FAILS)
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 from blocks_planning.analysis.bootstrap import Groups
 from blocks_planning.errors import InvalidInput
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
 
 PRESETS = {
     'text': {'divisor': 'smallest', 'execute': 'first'},

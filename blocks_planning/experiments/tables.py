@@ -14,11 +14,14 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-import pyarrow as pa
 
+from blocks_planning.extras import extra
 from blocks_planning.subgoals.decision import Decision
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.spec import TrialSpec
+
+with extra('experiments'):
+    import pyarrow as pa
 
 FAILED = 'failed'
 
