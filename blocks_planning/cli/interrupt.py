@@ -9,6 +9,7 @@ from typing import Generic, TypeVar
 from blocks_planning.search.result import CancelToken
 
 T = TypeVar('T')
+_LOOK_S = 0.5
 
 
 class _Work(threading.Thread, Generic[T]):
@@ -34,7 +35,10 @@ class _Work(threading.Thread, Generic[T]):
 
     def wait(self) -> T:
         """What the function returned."""
-        self._ended.wait()  # a join() that was interrupted once would not wait again
+        # A join() that was interrupted once would not wait again. Under Windows, Ctrl-C is seen
+        # only between two calls.
+        while not self._ended.wait(_LOOK_S):
+            pass
         if self._error is not None:
             raise self._error
         return self._result
