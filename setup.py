@@ -67,7 +67,14 @@ setup(
     ],
     python_requires='>=3.10',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
-    package_data={NAME: ['py.typed', 'analysis/templates/*.html', 'view/web/static/*']},
+    package_data={
+        NAME: [
+            'py.typed',
+            'analysis/paper.yaml',
+            'analysis/templates/*.html',
+            'view/web/static/*',
+        ]
+    },
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),

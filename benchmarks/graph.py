@@ -135,7 +135,7 @@ def _round_trips(command: list[str], rounds: int) -> list[float]:
             trial_id = f'echo {number}'
             if is_node:
                 heard.clear()
-                trial.publish(TRIAL.to_ros(TrialStarted(trial_id, SPEC)))
+                trial.publish(TRIAL.to_ros(None, TrialStarted(trial_id, SPEC)))
                 wait_for(lambda: heard)
             for message in actions:
                 heard.clear()

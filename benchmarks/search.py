@@ -15,7 +15,7 @@ from blocks_planning.board.stimuli import find_stimuli
 from blocks_planning.board.task import Task
 from blocks_planning.search.compiled import tables_of
 from blocks_planning.search.exact import analyse
-from blocks_planning.search.kernels import breadth_first
+from blocks_planning.search.kernels import breadth_first, lookahead
 from blocks_planning.search.result import Problem
 from blocks_planning.search.searches import AStar
 from blocks_planning.search.solve import solve
@@ -36,7 +36,7 @@ def _bfs_decisions(tasks: list[Task]) -> int:
     states = 0
     for task in tasks:
         tables = tables_of(task, task.silhouette)
-        search = breadth_first.make_search(tables, DEPTH)
+        search = lookahead.make_search(tables, DEPTH)
         empty, generator = pack([0], tables.cells), np.zeros(1, np.uint64)
         states += _decide(search, tables, empty, generator, np.zeros(1, np.uint8))
     return states

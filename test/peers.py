@@ -151,12 +151,10 @@ class Peer(Node):
     def say(self, message: Message) -> None:
         """Say something that a part would say."""
         topic = _TOPIC_OF[type(message)]
-        place = () if topic is TRIAL else (self._board,)
-        self.outlets[topic].publish(topic.to_ros(*place, message))
+        self.outlets[topic].publish(topic.to_ros(self._board, message))
 
     def _hear(self, topic: Topic, message: Any) -> None:
-        place = (self._board,) if topic.needs_board else ()
-        self.heard.append(topic.from_ros(*place, message))
+        self.heard.append(topic.from_ros(self._board, message))
 
     def only(self, *kinds: type[Any]) -> list[Any]:
         """What was heard of some kinds."""

@@ -2,8 +2,9 @@
 
 ::
 
-    cli  ->  ros  ->  view | experiments | analysis  ->  trials  ->  subgoals  ->  search
-         ->  board  ->  families  ->  extras | located | resources | settings  ->  errors
+    cli  ->  ros  ->  view | experiments | analysis  ->  fitting  ->  people  ->  trials  ->  worlds
+         ->  subgoals  ->  search  ->  board  ->  families
+         ->  extras | located | resources | settings  ->  errors
 """
 
 from __future__ import annotations
@@ -20,7 +21,10 @@ LAYERS = [
     {'board'},
     {'search'},
     {'subgoals'},
+    {'worlds'},
     {'trials'},
+    {'people'},
+    {'fitting'},
     {'view', 'experiments', 'analysis'},
     {'ros'},
     {'cli'},

@@ -14,7 +14,7 @@ from blocks_planning.board.kernels.masks import pack, words_of
 from blocks_planning.board.kernels.moves import Tables, make_tables
 from blocks_planning.board.task import Task
 from blocks_planning.errors import BlocksPlanningError, LimitExceeded
-from blocks_planning.search.kernels import best_first, breadth_first, random_placement
+from blocks_planning.search.kernels import best_first, breadth_first, lookahead, random_placement
 from blocks_planning.search.kernels.attempts import Question, run_attempts
 from blocks_planning.search.kernels.outcomes import CANCELLED, COMPLETE, OUT_OF_MEMORY, STUCK
 from blocks_planning.search.result import CancelToken, Problem, SolveResult, SolveStatus
@@ -41,11 +41,17 @@ def solve_at_random(problem: Problem, seed: int, budget: int, cancel: CancelToke
 
 
 def solve_breadth_first(
-    problem: Problem, depth: int, seed: int, budget: int, cancel: CancelToken
+    problem: Problem,
+    depth: int,
+    dead_ends_last: bool,
+    seed: int,
+    budget: int,
+    cancel: CancelToken,
 ) -> SolveResult:
     """Solve by breadth-first lookahead of ``depth`` placements."""
     tables = tables_of(problem.task, problem.region)
-    return _solve(breadth_first.make_search(tables, depth), tables, problem, seed, budget, cancel)
+    search = lookahead.make_search(tables, depth, dead_ends_last)
+    return _solve(search, tables, problem, seed, budget, cancel)
 
 
 def solve_best_first(
@@ -146,14 +152,23 @@ def placements_of(problem: Problem, moves: list[int]) -> tuple[Placed, ...]:
     return tuple(placements)
 
 
-def count_states(task: Task, depth: int, cancel: CancelToken) -> list[int] | None:
+def count_states(
+    task: Task, depth: int, cancel: CancelToken, counts: np.ndarray | None = None
+) -> list[int] | None:
     """Tree nodes at depths 1 to n, summed, for n = 1 to ``depth``; None if cancelled.
 
     It is what a breadth-first search from the empty board evaluates when nothing is found.
+
+    Args:
+        task: silhouette and blocks.
+        depth: n, 1 or more.
+        cancel: ends it from another thread.
+        counts: int64 (depth,), all 0: each number is written there as soon as it is known, also
+            if the count is cancelled later.
     """
     nowhere = tables_of(task, task.silhouette)._replace(target=-1)
-    counts = np.zeros(depth, np.int64)
-    search = breadth_first.make_search(nowhere, depth + 1)
+    counts = np.zeros(depth, np.int64) if counts is None else counts
+    search = lookahead.make_search(nowhere, depth + 1)
     empty = pack([0], nowhere.cells)
     finished = breadth_first.count_from(search, nowhere, empty, cancel.flag, counts)
     return counts.tolist() if finished else None
@@ -165,6 +180,6 @@ def warm_up() -> None:
     problem = Problem(Task(board, board.full), 0, board.full)
     cancel = CancelToken()
     solve_at_random(problem, 0, 0, cancel)
-    solve_breadth_first(problem, 2, 0, 0, cancel)
+    solve_breadth_first(problem, 2, True, 0, 0, cancel)
     solve_best_first(problem, 4, 1, 2.0, False, 0, 0, cancel)
     count_states(problem.task, 2, cancel)

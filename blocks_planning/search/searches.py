@@ -19,6 +19,7 @@ from blocks_planning.settings import Configured, setting
 MAX_DEPTH = 64
 MAX_ITERATIONS = 1_000_000
 DIVISORS = ('smallest', 'mean', 'largest')
+DEAD_ENDS = ('worst', 'ignored')
 EXECUTIONS = ('first', 'path')
 
 
@@ -54,19 +55,32 @@ class BreadthFirst(Configured):
     """Breadth-first lookahead of ``depth`` placements (paper, section "Action-level planning").
 
     It executes the first placement towards the best state seen, uniformly among equals, and
-    looks again; a complete state that is taken up for expansion is built whole.
+    looks again; a complete state that is taken up for expansion is built whole. More filled cells
+    are better. A state without a legal placement is 'worst' of all (the published numbers), which
+    takes a look one level beyond ``depth`` that is not counted; or such dead ends are 'ignored',
+    so that the filled cells alone decide (the paper's text).
     """
 
     name: ClassVar[str] = 'bfs'
     depth: int = setting(
         3, 'Placements that the search looks ahead.', least=1, most=MAX_DEPTH, unit='placements'
     )
+    dead_ends: str = setting(
+        'worst', 'How a state without a legal placement is ranked.', choices=DEAD_ENDS
+    )
+
+    @property
+    def dead_ends_last(self) -> bool:
+        """Whether a state without a legal placement ranks below all others."""
+        return self.dead_ends == 'worst'
 
     def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
         """See :class:`Search`."""
         from blocks_planning.search import compiled
 
-        return compiled.solve_breadth_first(problem, self.depth, seed, budget, cancel)
+        return compiled.solve_breadth_first(
+            problem, self.depth, self.dead_ends_last, seed, budget, cancel
+        )
 
 
 def _iterations() -> Any:

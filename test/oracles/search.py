@@ -72,9 +72,17 @@ def random_choice(task: Task, state: Cells, generator: Generator) -> Choice:
     return Choice((placements[generator.below(len(placements))],), 0)
 
 
-def bfs_choice(task: Task, state: Cells, generator: Generator, *, depth: int) -> Choice:
-    """Breadth-first lookahead of `depth` levels (at least 1)."""
+def bfs_choice(
+    task: Task, state: Cells, generator: Generator, *, depth: int, dead_ends: str = 'worst'
+) -> Choice:
+    """Breadth-first lookahead of `depth` levels (at least 1).
+
+    dead_ends: 'worst' to rank a state without a legal placement last, 'ignored' to rank every
+    state by the cells filled alone.
+    """
     check_at_least('depth', depth, 1)
+    if dead_ends not in ('worst', 'ignored'):
+        raise ValueError(f"dead_ends must be 'worst' or 'ignored', got {dead_ends!r}")
     generated: list[Node] = []
     level = [Node(state, ())]
     for _ in range(depth):
@@ -86,19 +94,27 @@ def bfs_choice(task: Task, state: Cells, generator: Generator, *, depth: int) ->
             generated.extend(new)
             next_level.extend(new)
         level = next_level
-    best = best_nodes(task, generated)
+    worth = worth_with_dead_ends_last if dead_ends == 'worst' else cells_filled
+    best = best_nodes(task, generated, worth)
     chosen = best[generator.below(len(best))]
     return Choice(chosen.path[:1], len(generated))
 
 
-def best_nodes(task: Task, nodes: Sequence[Node]) -> list[Node]:
+def best_nodes(
+    task: Task, nodes: Sequence[Node], worth: Callable[[Task, Cells], float]
+) -> list[Node]:
     """The nodes of highest worth, in the order they came."""
     worths = [worth(task, node.state) for node in nodes]
     best = max(worths)
     return [node for node, value in zip(nodes, worths, strict=True) if value == best]
 
 
-def worth(task: Task, state: Cells) -> float:
+def cells_filled(task: Task, state: Cells) -> float:
+    """How bfs judges a state if it ignores dead ends; a complete state has all cells filled."""
+    return len(state)
+
+
+def worth_with_dead_ends_last(task: Task, state: Cells) -> float:
     """How bfs judges a state: complete is best, a dead end worst, else the cells filled."""
     if state == task.region:
         return math.inf

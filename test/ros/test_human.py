@@ -16,12 +16,12 @@ from blocks_planning.ros.nodes import subgoal_selector
 from blocks_planning.ros.wire.graph import SUBGOAL_SELECTOR
 from blocks_planning.ros.wire.topics import OUTCOME, PROPOSAL, SEARCH_RESULT, STATE, SUBGOAL, TRIAL
 from blocks_planning.subgoals.proposals import Proposal
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
     SearchRequest,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,

@@ -63,6 +63,15 @@ def test_a_cost_by_hand() -> None:
     assert solve(Problem(task, 0, 0b11), BreadthFirst(2), 0).planning_cost == 5
 
 
+@pytest.mark.parametrize(('dead_ends', 'solved'), [('worst', True), ('ignored', False)])
+def test_dead_ends_by_hand(dead_ends: str, solved: bool) -> None:
+    """A row of 4 cells with blocks of 3 and 2: after the 3 nothing fits, and it fills more."""
+    task = Task(Board(4, 1), 0b1111, (Block(3, 1), Block(2, 1)))
+    for seed in range(5):
+        result = solve(Problem(task, 0, 0b1111), BreadthFirst(1, dead_ends), seed, budget=0)
+        assert result.solved is solved
+
+
 def test_random_placement_ends_although_it_costs_nothing() -> None:
     dominoes = Task(BOARD, BOARD.full, (Block(1, 2), Block(2, 1)))
     result = solve(Problem(dominoes, 0, BOARD.full), make_search('random', {}), 0, budget=50)
@@ -111,7 +120,12 @@ def test_a_region_off_the_board_or_off_what_is_built_is_refused(built: int, regi
         ('bfs', {'depth': 0}, 'depth must be a whole number from 1 to 64, got 0'),
         ('bfs', {'depth': True}, 'depth .* got True'),
         ('bfs', {'depth': 2.0}, 'depth .* got 2.0'),
-        ('bfs', {'iterations': 8}, "search bfs has no setting 'iterations'; it has depth"),
+        (
+            'bfs',
+            {'iterations': 8},
+            "search bfs has no setting 'iterations'; it has depth, dead_ends",
+        ),
+        ('bfs', {'dead_ends': 'last'}, "dead_ends must be one of worst, ignored, got 'last'"),
         ('random', {'depth': 1}, "search random has no setting 'depth'; it has none"),
         ('astar', {'iterations': 1}, 'iterations must be a whole number from 2 to .*, got 1'),
         ('astar', {'divisor': 'median'}, "divisor must be one of .*, got 'median'"),

@@ -9,7 +9,7 @@ by what this node knows, and said if it can be taken.
 | listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched) |
 | says | `subgoal/proposal` (latched) |
 | hears too | `/diagnostics` of the nodes in its namespace; `search/result`, unless no trial of its script is a person's: answers are many |
-| parameters | `remind_period_s`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none; `participant`: code of the person of its trials, '': as the script says |
+| parameters | `remind_period_s`; `frame_id`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none; `participant`: code of the person of its trials, '': as the script says |
 """
 
 from __future__ import annotations
@@ -34,7 +34,6 @@ from blocks_planning.ros.runtime.processes import PARENT_VARIABLE
 from blocks_planning.ros.wire import qos
 from blocks_planning.ros.wire.graph import TRIAL_VIEW
 from blocks_planning.ros.wire.topics import SEARCH_RESULT, Topic
-from blocks_planning.subgoals.human import Human
 from blocks_planning.trials.messages import Message
 from blocks_planning.trials.script import read_script
 from blocks_planning.trials.spec import TrialSpec
@@ -182,7 +181,7 @@ class TrialView(PartNode):
 
 
 def _is_persons(spec: TrialSpec) -> bool:
-    return isinstance(spec.strategy, Human)
+    return spec.strategy.asks_person
 
 
 def stand_back() -> None:

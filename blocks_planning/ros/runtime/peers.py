@@ -106,29 +106,3 @@ def _wanted(name: str) -> set[_End]:
     said: list[Topic | ViewTopic] = [*topics.says, *topics.views]
     says = {_End(True, topic.name) for topic in said}
     return says | {_End(False, topic.name) for topic in topics.listens}
-
-
-class Attendance:
-    """How long whoever is not there has been missing."""
-
-    def __init__(self) -> None:
-        """Nobody is missing."""
-        self._since: dict[str, float] = {}
-
-    def note(self, missing: Iterable[str], now_s: float) -> list[str]:
-        """Take note of who is missing at a moment [s]; return who has just gone."""
-        since = {name: self._since.get(name, now_s) for name in missing}
-        gone = [name for name in since if name not in self._since]
-        self._since = since
-        return gone
-
-    @property
-    def missing(self) -> list[str]:
-        """Who is missing."""
-        return list(self._since)
-
-    def overdue(self, now_s: float, bound_s: float, begin_s: float) -> str:
-        """Who has been missing for ``bound_s`` or longer since ``begin_s``, as a sentence; or ''."""
-        waited = {name: now_s - max(since, begin_s) for name, since in self._since.items()}
-        late = [f'{name} for {wait:.1f} s' for name, wait in waited.items() if wait >= bound_s]
-        return f'missing: {", ".join(late)}' if late else ''

@@ -49,7 +49,7 @@ class NodeProcess:
             self.name,
             '--ros-args',
         ]
-        command += ['--disable-external-lib-logs', *self.arguments]
+        command += ['--disable-external-lib-logs', '--log-level', 'warn', *self.arguments]
         environment = {**self.environment, PARENT_VARIABLE: str(os.getpid())}
         self._started = time.monotonic()
         self._process = subprocess.Popen(command, env=environment, start_new_session=True)

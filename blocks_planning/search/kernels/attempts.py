@@ -13,13 +13,13 @@ from numba.extending import overload
 
 from blocks_planning.board.kernels.compiling import kernel
 from blocks_planning.board.kernels.masks import load
-from blocks_planning.search.kernels import best_first, breadth_first, random_placement
+from blocks_planning.search.kernels import best_first, breadth_first, lookahead, random_placement
 from blocks_planning.search.kernels.outcomes import CANCELLED, STUCK
 from blocks_planning.search.kernels.randomness import seed
 
 _ATTEMPTS = {
     random_placement.RandomPlacement: random_placement.attempt,
-    breadth_first.BreadthFirst: breadth_first.attempt,
+    lookahead.BreadthFirst: breadth_first.attempt,
     best_first.BestFirst: best_first.attempt,
 }
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 from blocks_planning_msgs import msg as ros
@@ -10,7 +10,7 @@ from blocks_planning_msgs import msg as ros
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Block, Placed
 from blocks_planning.board.geometry import MAX_SIDE, Board, Mask
-from blocks_planning.ros.wire.conversions.fields import refuse
+from blocks_planning.ros.wire.conversions.fields import bounded, refuse
 
 
 def grid_to_ros(board: Board, mask: Mask) -> ros.Grid:
@@ -60,7 +60,7 @@ def mask_on(board: Board, grid: ros.Grid, field: str) -> Mask:
 def placed_to_ros(placed: Placed) -> ros.Placement:
     """A block where it lies."""
     return ros.Placement(
-        block=ros.Block(width=placed.width, height=placed.height),
+        block=block_to_ros(placed.placement.block),
         column=placed.column,
         row=placed.row,
     )
@@ -73,6 +73,11 @@ def block_from_ros(block: ros.Block, field: str) -> Block:
         if not 1 <= side <= MAX_SIDE:
             raise refuse(f'{field}.{name}', side, f'1 to {MAX_SIDE} cells')
     return Block(block.width, block.height)
+
+
+def block_to_ros(block: Block) -> ros.Block:
+    """A block of a library."""
+    return ros.Block(width=block.width, height=block.height)
 
 
 def placed_from_ros(board: Board, message: ros.Placement, field: str) -> Placed:
@@ -98,3 +103,19 @@ def way_from_ros(
         placements.append(placed)
         built |= rules.cells_of(board, placed)
     return tuple(placements), built
+
+
+def blocks_from_ros(
+    board: Board, messages: Sequence[ros.Placement], field: str
+) -> tuple[Placed, ...]:
+    """Blocks that lie on the board, whether or not they can get there."""
+    bounded(messages, field, 0, board.size)
+    return tuple(
+        placed_from_ros(board, message, f'{field}[{index}]')
+        for index, message in enumerate(messages)
+    )
+
+
+def blocks_to_ros(blocks: Iterable[Placed]) -> list[ros.Placement]:
+    """Blocks where they lie."""
+    return [placed_to_ros(placed) for placed in blocks]
