@@ -4,7 +4,7 @@
 
     cli  ->  ros  ->  view | experiments | analysis  ->  fitting  ->  people | towers  ->  trials
          ->  worlds  ->  subgoals  ->  search  ->  board  ->  families
-         ->  located | resources | settings  ->  errors
+         ->  extras | located | resources | settings  ->  errors
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from source_imports import PACKAGE, Source, imports, package_sources
 
 LAYERS = [
     {'errors'},
-    {'located', 'resources', 'settings'},
+    {'extras', 'located', 'resources', 'settings'},
     {'families'},
     {'board'},
     {'search'},

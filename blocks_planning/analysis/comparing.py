@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import pandas as pd
-
 from blocks_planning.analysis.bootstrap import Estimate
 from blocks_planning.analysis.explanations import COUNTINGS
 from blocks_planning.analysis.formats import format_number, with_interval
 from blocks_planning.analysis.paper import Claim, Reported
 from blocks_planning.analysis.paper_file import the_paper
 from blocks_planning.analysis.verdicts import Verdict, judge
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
 
 NONE_KNOWN = 'None known.'
 

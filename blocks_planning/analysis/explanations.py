@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from blocks_planning.analysis.bootstrap import (
     ITERATIONS,
@@ -27,6 +26,10 @@ from blocks_planning.analysis.bootstrap import (
 )
 from blocks_planning.analysis.paper import Claim
 from blocks_planning.analysis.trials import groups_of, planners_of, single_attempts_of
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
 
 SEED = 20210726
 _COSTS = ('action_planning_cost', 'subgoal_planning_cost', 'states_evaluated')

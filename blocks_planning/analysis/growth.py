@@ -6,11 +6,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
 from blocks_planning.analysis.style import COLOURS, new_figure, styled
 from blocks_planning.analysis.trials import read_trials
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
+with extra('figures'):
+    from matplotlib.figure import Figure
 
 WAYS = {
     'height': 'height [cells], at width 8',

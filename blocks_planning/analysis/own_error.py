@@ -11,9 +11,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from blocks_planning.analysis.bootstrap import mean_of_present, pearson
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
 
 
 class Totals(NamedTuple):

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from blocks_planning.analysis.marks import legend_handles, mark_of, style_of
 from blocks_planning.analysis.paper import Kind
@@ -19,6 +18,10 @@ from blocks_planning.analysis.style import (
     new_figure,
     styled,
 )
+from blocks_planning.extras import extra
+
+with extra('figures'):
+    from matplotlib.figure import Figure
 
 Results = dict[str, Any]
 

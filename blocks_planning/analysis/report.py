@@ -7,10 +7,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
-from matplotlib.figure import Figure
-
 from blocks_planning.analysis import formats
 from blocks_planning.analysis.comparing import compare, count_verdicts, ratio_text
 from blocks_planning.analysis.paper_file import the_paper
@@ -27,6 +23,13 @@ from blocks_planning.analysis.trials import (
     read_decisions,
     read_trials,
 )
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
+with extra('figures'):
+    from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+    from matplotlib.figure import Figure
 
 MAIN = PRESETS[0]
 """The preset whose numbers stand at the top of ``results.json``."""

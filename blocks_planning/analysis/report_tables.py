@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-import pandas as pd
-
 from blocks_planning.analysis.own_error import error_of_mean, totals_of
 from blocks_planning.analysis.paper_file import the_paper
 from blocks_planning.analysis.style import SEARCH_NAMES
 from blocks_planning.analysis.trials import SEARCH_SETTINGS, with_settings
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
 
 SWITCHED = ('success', 'action_planning_cost', 'subgoal_planning_cost', 'blocks')
 _COMMITS = ('subgoal', 'action')

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from blocks_planning.analysis.bootstrap import (
     Estimate,
@@ -33,6 +32,10 @@ from blocks_planning.analysis.trials import (
     planners_of,
     single_attempts_of,
 )
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
 
 STRATEGIES = ('none', 'scoping', 'full')
 DIFFERENCES = (('full', 'none'), ('scoping', 'full'), ('scoping', 'none'))

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
 from blocks_planning.analysis.style import SEARCH_NAMES, new_figure, styled
 from blocks_planning.analysis.trials import planners_of
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
+with extra('figures'):
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
 
 _ACROSS = 8
 """Towers in a row of the figure."""

@@ -6,11 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 from blocks_planning.analysis.bootstrap import Groups
 from blocks_planning.analysis.paper_file import the_paper
 from blocks_planning.errors import InvalidInput
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
 
 PRESETS = tuple(the_paper().presets)
 """The names of the presets: how the published numbers were made, and the text to the letter."""

@@ -221,9 +221,9 @@ def read_text(path: Path) -> str:
     try:
         with path.open('rb') as file:
             data = file.read(MAX_FILE_BYTES + 1)
-    except IsADirectoryError:
-        raise StimulusError(f'{path}: is a directory; name a file in it') from None
     except OSError as error:
+        if path.is_dir():
+            raise StimulusError(f'{path}: is a directory; name a file in it') from None
         raise StimulusError(f'{path}: cannot be read: {error.strerror}') from None
     except ValueError as error:  # a NUL in the path
         raise StimulusError(f'{str(path)!r}: cannot be read: {error}') from None

@@ -21,6 +21,7 @@ from functools import lru_cache
 from blocks_planning.board.blocks import Placed
 from blocks_planning.board.contacts import Contact, Structure, is_carried, must_tip, structure_of
 from blocks_planning.errors import BlocksPlanningError, ConfigurationError
+from blocks_planning.extras import extra
 
 MARGIN = Fraction(1, 50)
 """How far the ends of contacts are moved inwards for a tower that stands [cells]."""
@@ -95,8 +96,9 @@ def _is_solvable(structure: Structure, friction: float, margin: float) -> bool:
     (mu, 1) and (-mu, 1), each 0 or more. So all that is left are equations.
     """
     try:
-        from scipy.optimize import linprog
-        from scipy.sparse import csr_array
+        with extra('experiments'):
+            from scipy.optimize import linprog
+            from scipy.sparse import csr_array
     except ImportError:
         raise ConfigurationError(
             'loose blocks need scipy to decide whether a tower stands: install scipy, or the '

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from blocks_planning.errors import LimitExceeded
+from blocks_planning.extras import extra
 from blocks_planning.search.counting import count_task
 from blocks_planning.trials.script import Tower
 
@@ -17,7 +18,8 @@ def size_table(towers: Sequence[Tower], workers: int) -> list[dict[str, Any]]:
         A dict per tower: ``tower``, ``cells``, ``states``, ``complete_sequences`` and
         ``sequences``. The numbers are None if the tower outgrows a limit.
     """
-    from joblib import Parallel, delayed
+    with extra('experiments'):
+        from joblib import Parallel, delayed
 
     rows: list[dict[str, Any]] = Parallel(n_jobs=workers)(delayed(_row)(tower) for tower in towers)
     return rows

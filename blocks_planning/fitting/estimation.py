@@ -9,10 +9,13 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq, minimize
 
+from blocks_planning.extras import extra
 from blocks_planning.fitting.choiceset import ChoiceSet
 from blocks_planning.fitting.models import BOUNDS, Model, log_likelihoods
+
+with extra('experiments'):
+    from scipy.optimize import brentq, minimize
 
 _STARTS = {'lambda': (1e-4, 1e-3, 1e-2), 'temperature': (0.5, 4.0), 'lapse': (0.05,)}
 _STARTS_FOLLOWED = 2

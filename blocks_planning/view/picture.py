@@ -12,19 +12,21 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
-from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.figure import Figure
-from PIL import Image
-
 from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.extras import extra
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.view import captions, palette
 from blocks_planning.view.outline import outline
 from blocks_planning.view.scene import Scene, last_scene, scenes_of
+
+with extra('figures'):
+    import matplotlib as mpl
+    from matplotlib.axes import Axes
+    from matplotlib.collections import LineCollection, PolyCollection
+    from matplotlib.figure import Figure
+    from PIL import Image
 
 CELL_INCHES = 0.5
 MIN_WIDTH_INCHES = 4.8

@@ -6,12 +6,15 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.stats import rankdata
 
 from blocks_planning.analysis.behaviour.shares import draw_builders, interval
 from blocks_planning.analysis.bootstrap import ITERATIONS, NOTHING, Estimate, pearson
+from blocks_planning.extras import extra
 from blocks_planning.people.data import Build, tasks
 from blocks_planning.people.orders import perfect
+
+with extra('experiments'):
+    from scipy.stats import rankdata
 
 SEED = 20211003
 

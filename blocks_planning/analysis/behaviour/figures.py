@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from matplotlib.figure import Figure
-
 from blocks_planning.analysis.behaviour.building import LABELS, PEOPLE
 from blocks_planning.analysis.style import (
     COLOURS,
@@ -14,6 +12,10 @@ from blocks_planning.analysis.style import (
     new_figure,
     styled,
 )
+from blocks_planning.extras import extra
+
+with extra('figures'):
+    from matplotlib.figure import Figure
 
 FAMILY_COLOURS = ('#0072B2', '#E69F00', '#CC79A7', '#56B4E9')
 _SHOWN = ('upwards', 'lowest_row', 'rightwards')

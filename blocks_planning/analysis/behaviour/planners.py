@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
-import pandas as pd
-
 from blocks_planning.analysis.trials import planners_of, read_trials
 from blocks_planning.board.blocks import Placed
+from blocks_planning.extras import extra
 from blocks_planning.people.data import SET, Build
 from blocks_planning.trials.record import TrialRecord
+
+with extra('experiments'):
+    import pandas as pd
 
 NAMED_BY = ('search', 'strategy', 'regions', 'horizon')
 """Columns of the table of trials that tell planners apart; those that it has are used."""

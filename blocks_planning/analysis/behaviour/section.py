@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
-
 from blocks_planning.analysis.behaviour.building import LABELS, PEOPLE, compare_building
 from blocks_planning.analysis.behaviour.difficulty import compare_difficulty
 from blocks_planning.analysis.behaviour.figures import (
@@ -17,7 +15,11 @@ from blocks_planning.analysis.behaviour.figures import (
 )
 from blocks_planning.analysis.behaviour.marking import compare_parts
 from blocks_planning.analysis.behaviour.planners import builds_of_sweep
+from blocks_planning.extras import extra
 from blocks_planning.people.data import read_builds, read_markings
+
+with extra('figures'):
+    from matplotlib.figure import Figure
 
 TEMPLATE = 'behaviour.html'
 """The partial; it needs ``behaviour`` (:func:`section_content`), ``figures`` (URLs by name) and
