@@ -33,7 +33,7 @@ from blocks_planning.ros.wire.topics import TOPICS, TRIAL, Topic  # noqa: E402
 from blocks_planning.trials.messages import Message  # noqa: E402
 from blocks_planning.trials.spec import TrialSpec  # noqa: E402
 
-DEADLINE_S = 20.0
+DEADLINE_S = 60.0
 _SPIN_S = 0.002
 _TOPIC_OF = {topic.kind: topic for topic in TOPICS}
 

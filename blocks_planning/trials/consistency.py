@@ -79,8 +79,13 @@ class Consistency:
             raise Contradiction(f'placements: {problem}')
         self._check_status(state)
         if len(state.observations) > len(self._observations):
+            is_next = len(state.observations) == len(self._observations) + 1
+            self._states = (
+                [*self._states, state.built]
+                if is_next
+                else states_of(self.spec.task.board, state.observations)
+            )
             self._observations = state.observations
-            self._states = states_of(self.spec.task.board, state.observations)
 
     def _check_status(self, state: WorldState) -> None:
         """A world need not notice that it is stuck; then the planner gives up."""

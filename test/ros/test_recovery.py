@@ -32,13 +32,11 @@ from blocks_planning.ros.nodes.bag_recorder import BagRecorder
 from blocks_planning.ros.nodes.marker_publisher import MarkerPublisher
 from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
 from blocks_planning.ros.nodes.trial_view import TrialView
-from blocks_planning.ros.runtime import processes
 from blocks_planning.ros.runtime.attendance import Attendance
 from blocks_planning.ros.runtime.diagnostics import TOPIC, Health
 from blocks_planning.ros.runtime.journal import Journal
 from blocks_planning.ros.runtime.part_node import PartNode
 from blocks_planning.ros.runtime.process import stood_still
-from blocks_planning.ros.runtime.processes import MOST_DEATHS, STABLE_S, NodeProcess
 from blocks_planning.ros.runtime.single import claim_name
 from blocks_planning.ros.wire.conversions.trial import spec_to_ros
 from blocks_planning.ros.wire.graph import GRAPH, TRIAL_ORCHESTRATOR, WORLD
@@ -443,65 +441,3 @@ def test_node_that_was_stopped_is_there_again(graph: Graph, tmp_path: Path) -> N
             process.terminate()
         assert process.stderr is not None
         assert re.search(r'was stopped for \d+\.\d s, and starts again', process.stderr.read())
-
-
-class Dying:
-    """Processes that end as soon as they are told, in a time of their own."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.now, self.code, self.started = 100.0, None, 0
-        monkeypatch.setattr(processes.time, 'monotonic', lambda: self.now)
-        monkeypatch.setattr(processes.subprocess, 'Popen', self.popen)
-
-    code: int | None
-
-    def popen(self, *_: object, **__: object) -> Dying:
-        self.started += 1
-        self.code = None
-        return self
-
-    def poll(self) -> int | None:
-        return self.code
-
-
-@pytest.fixture
-def dying(monkeypatch: pytest.MonkeyPatch) -> Dying:
-    return Dying(monkeypatch)
-
-
-def watch(process: NodeProcess, dying: Dying, seconds: float) -> bool:
-    """Look after a process for some time; return whether it is not given up."""
-    end = dying.now + seconds
-    kept = True
-    while kept and dying.now < end:
-        dying.now += 0.05
-        kept = process.keep_alive()
-    return kept
-
-
-def test_process_that_dies_at_once_is_given_up(dying: Dying) -> None:
-    process = NodeProcess('world', (), {})
-    process.start()
-    pauses = []
-    for _ in range(MOST_DEATHS):
-        dying.code, died = -9, dying.now
-        while dying.poll() is not None:
-            assert watch(process, dying, 0.04)
-        pauses.append(dying.now - died)
-    dying.code = -9
-    assert not process.keep_alive()
-    assert (process.restarts, dying.started) == (MOST_DEATHS, MOST_DEATHS + 1)
-    assert pauses == sorted(pauses)
-    assert pauses[0] < 0.3
-    assert pauses[-1] < 4.0
-
-
-def test_process_that_runs_for_a_while_is_forgiven(dying: Dying) -> None:
-    process = NodeProcess('world', (), {})
-    process.start()
-    for _ in range(20 * MOST_DEATHS):
-        assert watch(process, dying, STABLE_S + 1)
-        dying.code = -9
-        assert watch(process, dying, 0.5)
-        assert dying.poll() is None
-    assert process.restarts == 20 * MOST_DEATHS

@@ -55,7 +55,6 @@ class ActionSearcher(PartNode):
         self._counting = threading.Lock()
         self._running = 0
         self._evaluated = 0
-        self._wake = self.create_guard_condition(self._deliver)
 
     def compile(self) -> None:
         """Make the compiled parts of the searches ready, in a thread; searches wait for it."""
@@ -107,7 +106,7 @@ class ActionSearcher(PartNode):
             self.get_logger().info(f'compiled in {time.monotonic() - begun_s:.1f} s')
         self.is_compiling = False
         self._may_search.set()
-        self._wake.trigger()
+        self.call_soon(self._deliver)
 
     def _search(self, trial: TrialStarted, question: Solve, cancel: CancelToken) -> None:
         spec = trial.spec
@@ -124,7 +123,7 @@ class ActionSearcher(PartNode):
             self._answers.append(SearchAnswer(trial.trial_id, question.query, result))
         finally:
             self._count_running(-1)
-        self._wake.trigger()
+        self.call_soon(self._deliver)
 
     def _count_running(self, change: int) -> None:
         with self._counting:

@@ -32,7 +32,7 @@ from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import PartNode
 from blocks_planning.ros.runtime.process import run
 from blocks_planning.ros.runtime.scripted import ScriptRun
-from blocks_planning.ros.wire.graph import TRIAL_ORCHESTRATOR, VIEWERS
+from blocks_planning.ros.wire.graph import LISTENERS, TRIAL_ORCHESTRATOR
 from blocks_planning.ros.wire.topics import OUTCOME, STATE, SUBGOAL
 from blocks_planning.trials import scribe
 from blocks_planning.trials.execution import SubgoalChosen
@@ -177,20 +177,25 @@ class TrialOrchestrator(PartNode):
     def _look_first(self) -> None:
         """Begin the script as soon as all nodes are present."""
         self._note_missing(self.values['wait_for'])
-        if self._script is None or not self._attendance.missing:
-            self._first_looks.cancel()
-            if self._script is not None:
-                self._script.begin()
-        elif self._overdue:
-            self._first_looks.cancel()
-            self._give_up(self._overdue)
+        missing, overdue, script = self._attendance.missing, self._overdue, self._script
+        if missing and script is not None and not overdue:
+            return
+        self._first_looks.cancel()
+        if script is None:
+            return
+        if not set(missing) <= set(LISTENERS):
+            self._give_up(overdue)
+            return
+        if missing:
+            self.get_logger().warning(f'{overdue}; the script begins without')
+        script.begin()
 
     def _look(self) -> None:
         """End a trial that has waited too long for a node."""
         if not self._first_looks.is_canceled():
             return
-        # A trial does not need nodes that only look.
-        wanted = [name for name in self.values['wait_for'] if name not in VIEWERS]
+        # A trial does not need nodes that only record or show.
+        wanted = [name for name in self.values['wait_for'] if name not in LISTENERS]
         gone = self._note_missing(wanted)
         if gone:
             bound_s = self.values['peer_timeout_s']

@@ -82,7 +82,6 @@ class TrialView(PartNode):
         self._health = NOTHING
         self._place = self._queue.place_of(None)
         self._posted: deque[tuple[Any, Future[Refused | None]]] = deque()
-        self._wake = self.create_guard_condition(self._take_posted)
         self._mailbox = Mailbox()
         self.create_subscription(
             DiagnosticArray, DIAGNOSTICS, self._receive_health, qos.stream(), raw=True
@@ -146,7 +145,7 @@ class TrialView(PartNode):
         """From the thread of the server: what a person has sent, to be judged in the node's own."""
         answer: Future[Refused | None] = Future()
         self._posted.append((data, answer))
-        self._wake.trigger()
+        self.call_soon(self._take_posted)
         return answer
 
     def _take_posted(self) -> None:

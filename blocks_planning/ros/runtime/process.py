@@ -29,13 +29,14 @@ import rclpy
 import rclpy.utilities
 from rclpy.context import Context
 from rclpy.exceptions import NameValidationException, ParameterException
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import Executor
+from rclpy.experimental import EventsExecutor
 from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from blocks_planning.errors import BlocksPlanningError, ConfigurationError
-from blocks_planning.ros.runtime.processes import PARENT_VARIABLE
+from blocks_planning.ros.runtime.processes import PARENT_VARIABLE, tell_ready
 from blocks_planning.ros.runtime.single import claim_name
 
 EXIT_BOUND_S = float(os.environ.get('BLOCKS_PLANNING_EXIT_BOUND_S', '0.9'))
@@ -77,11 +78,12 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         made.append(node.get_fully_qualified_name())
         claim = claim_name(node.context.get_domain_id(), node.get_fully_qualified_name())
         node.get_logger().info('ready')
+        tell_ready()
     except (BlocksPlanningError, ParameterException, NameValidationException) as error:
         sys.stderr.write(f'Error: {" ".join(str(error).split())}\n')
         _leave(BAD_INPUT)
     failures: list[BaseException] = []
-    executor = SingleThreadedExecutor()
+    executor = EventsExecutor()  # the others make their set of things to wait for anew each time
     executor.add_node(node)
     spinning = threading.Thread(
         target=_spin,
@@ -200,7 +202,7 @@ def _begin_anew() -> NoReturn:
 
 
 def _spin(
-    executor: SingleThreadedExecutor,
+    executor: Executor,
     stop: threading.Event,
     failures: list[BaseException],
     drain_s: float,

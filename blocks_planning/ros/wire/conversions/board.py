@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 from blocks_planning_msgs import msg as ros
 
@@ -30,7 +31,6 @@ from blocks_planning.trials.messages import (
     PlacementCode,
     PlacementOutcome,
     WorldState,
-    observed,
 )
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.worlds.observation import (
@@ -38,6 +38,7 @@ from blocks_planning.worlds.observation import (
     Observation,
     Observations,
     blocks_after,
+    mask_of,
     wrong_change,
 )
 
@@ -85,10 +86,10 @@ def state_from_ros(board: Board, message: ros.WorldState) -> WorldState:
     if blocks_from_ros(board, message.placements, 'placements') != blocks:
         raise refuse('placements', 'others', 'the blocks that stand after all observations')
     status = word(TrialStatus, message.status, 'status', _STATE_STATUSES)
-    state = observed(message.trial_id, board, observations, status)
-    if mask_on(board, message.built, 'built') != state.built:
+    built = mask_of(board, blocks)
+    if mask_on(board, message.built, 'built') != built:
         raise refuse('built', 'other cells', 'the cells that the placements fill')
-    return state
+    return WorldState(message.trial_id, observations, blocks, built, status)
 
 
 def _history_from_ros(
@@ -108,8 +109,9 @@ def _history_from_ros(
     return tuple(observations), blocks
 
 
+@lru_cache(maxsize=4096)  # every later state has it too
 def observation_to_ros(seen: Observation) -> ros.Observation:
-    """See :class:`Observation`."""
+    """See :class:`Observation`; the message is kept, and must not be changed."""
     message = ros.Observation(
         landed=blocks_to_ros(seen.landed),
         gone=blocks_to_ros(seen.gone),

@@ -1,4 +1,7 @@
-"""Cells, blocks and placements."""
+"""Cells, blocks and placements.
+
+The messages made here are kept and used again: they must not be changed.
+"""
 
 from __future__ import annotations
 
@@ -13,17 +16,13 @@ from blocks_planning.board.geometry import MAX_SIDE, Board, Mask
 from blocks_planning.ros.wire.conversions.fields import bounded, refuse
 
 
+@lru_cache(maxsize=4096)  # the same cells are sent again and again
 def grid_to_ros(board: Board, mask: Mask) -> ros.Grid:
     """A mask as cells, row by row from the ground."""
-    return ros.Grid(width=board.width, height=board.height, cells=_cells_of(board, mask))
-
-
-@lru_cache(maxsize=4096)  # the same regions are spoken of again and again
-def _cells_of(board: Board, mask: Mask) -> bytes:
     cells = bytearray(board.size)
     for column, row in board.cells(mask):
         cells[row * board.width + column] = 1
-    return bytes(cells)
+    return ros.Grid(width=board.width, height=board.height, cells=bytes(cells))
 
 
 def grid_from_ros(grid: ros.Grid, field: str) -> tuple[Board, Mask]:
@@ -57,6 +56,7 @@ def mask_on(board: Board, grid: ros.Grid, field: str) -> Mask:
     return mask
 
 
+@lru_cache(maxsize=1 << 14)
 def placed_to_ros(placed: Placed) -> ros.Placement:
     """A block where it lies."""
     return ros.Placement(
@@ -75,6 +75,7 @@ def block_from_ros(block: ros.Block, field: str) -> Block:
     return Block(block.width, block.height)
 
 
+@lru_cache(maxsize=MAX_SIDE * MAX_SIDE)
 def block_to_ros(block: Block) -> ros.Block:
     """A block of a library."""
     return ros.Block(width=block.width, height=block.height)
@@ -82,11 +83,24 @@ def block_to_ros(block: Block) -> ros.Block:
 
 def placed_from_ros(board: Board, message: ros.Placement, field: str) -> Placed:
     """A block that lies on the board; whether it can get there is not looked at."""
-    block = block_from_ros(message.block, f'{field}.block')
-    if message.column + block.width > board.width or message.row + block.height > board.height:
-        place = f'column {message.column}, row {message.row}'
-        raise refuse(field, place, f'a place on the board for a block of {block}')
-    return Placed(*block, message.column, message.row)
+    size, block = (board.width, board.height), message.block
+    placed = _placed(*size, block.width, block.height, message.column, message.row)
+    if placed is not None:
+        return placed
+    kind = block_from_ros(message.block, f'{field}.block')
+    place = f'column {message.column}, row {message.row}'
+    raise refuse(field, place, f'a place on the board for a block of {kind}')
+
+
+@lru_cache(maxsize=1 << 14)  # the same blocks are told again in every state
+def _placed(
+    columns: int, rows: int, width: int, height: int, column: int, row: int
+) -> Placed | None:
+    """A block where it lies; None if that is not on a board of such a size."""
+    is_block = 1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE
+    if is_block and column + width <= columns and row + height <= rows:
+        return Placed(width, height, column, row)
+    return None
 
 
 def way_from_ros(
