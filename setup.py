@@ -72,6 +72,7 @@ setup(
         'scipy>=1.11.4',
     ],
     extras_require={
+        'robot': ['mujoco>=3.17,<4'],
         'test': ['hypothesis>=6.98', 'mcap-ros2-support>=0.6', 'playwright>=1.40', 'pytest>=7.4.4']
     },
     entry_points={
