@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.robot.scene import FILM_CAMERA, FILM_LIGHT
 from blocks_planning.robot.simulation import Simulation
 
 Pixels: TypeAlias = NDArray[np.uint8]
@@ -72,8 +73,14 @@ class Painter:
         atexit.register(self.close)
 
     def paint(self, camera: str, width: int, height: int) -> Pixels:
-        """A picture by a camera of the scene, ``width`` x ``height`` [pixels]."""
+        """A picture by a camera of the scene, ``width`` x ``height`` [pixels].
+
+        The film camera switches its light on; the others see plain colours.
+        """
         model, data = self._simulation.model, self._simulation.data
+        is_film = camera == FILM_CAMERA
+        model.light_active[model.light(FILM_LIGHT).id] = is_film
+        model.vis.headlight.ambient[:] = 0.55 if is_film else 1.0
         self._simulation.refresh()
         self._gl.make_current()
         if self._model is not model:

@@ -24,7 +24,7 @@ TIMESTEP = 0.002
 AXES = ('gantry_x', 'gantry_z')
 FINGERS = ('finger_front', 'finger_back')
 JOINTS = (*AXES, *FINGERS)
-FRONT_CAMERA, FILM_CAMERA = 'front', 'film'
+FRONT_CAMERA, FILM_CAMERA, FILM_LIGHT = 'front', 'film', 'film_light'
 PIXELS_PER_CELL = 16
 """Of the front camera."""
 STIFFNESS = 40000.0
@@ -128,7 +128,7 @@ def _add_surroundings(world: Xml.Element, sizes: Sizes, settings: RobotSettings)
         'geom',
         name='table',
         type='plane',
-        size=_numbers(60 * cell, 60 * cell, 1.0),
+        size=_numbers(400 * cell, 400 * cell, 1.0),
         material='matt',
         rgba=_TABLE,
         friction=_numbers(settings.friction, 0.005, 0.0001),
@@ -146,13 +146,25 @@ def _add_surroundings(world: Xml.Element, sizes: Sizes, settings: RobotSettings)
         xyaxes='1 0 0 0 0 1',
         fovy=repr(height),
     )
+    # For films only: a light that is off, so that the front camera sees plain colours.
+    _add(
+        world,
+        'light',
+        name=FILM_LIGHT,
+        active='false',
+        directional='true',
+        pos=_numbers(width / 2 - 6 * cell, -15 * cell, 30 * cell),
+        dir='0.3 0.55 -1',
+        diffuse='0.5 0.5 0.5',
+        specular='0 0 0',
+    )
     span = max(board.width + 9, 1.5 * board.height + 6) * cell
     _add(
         world,
         'camera',
         name=FILM_CAMERA,
-        pos=_numbers(width / 2 - 2 * cell, -1.35 * span, height * 0.75 + 2 * cell),
-        xyaxes='1 0 0 0 0.12 1',
+        pos=_numbers(width / 2 + 1.0 * cell, -1.05 * span, height + 3 * cell),
+        xyaxes='1 0.2 0 -0.04 0.2 1',
         fovy='42',
     )
 
