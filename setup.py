@@ -103,6 +103,7 @@ setup(
             'playwright>=1.40',
             'pytest>=7.4.4',
         ],
+        'robot': ['mujoco>=3.17,<4'],  # a body in simulation; not in `all`
     },
     entry_points={
         'console_scripts': [

@@ -214,10 +214,15 @@ def _animation(record: TrialRecord) -> bytes:
     return file.getvalue()
 
 
+def image_of(scene: Scene) -> Image.Image:
+    """A scene as a picture in memory, for films that show something else beside it."""
+    with Image.open(BytesIO(_drawn(scene, '.png', ANIMATION_DPI))) as image:
+        return image.convert('RGB')
+
+
 def _image(scene: Scene, colours: Image.Image) -> Image.Image:
     """A scene in the colours of a palette."""
-    with Image.open(BytesIO(_drawn(scene, '.png', ANIMATION_DPI))) as image:
-        return image.convert('RGB').quantize(palette=colours, dither=Image.Dither.NONE)
+    return image_of(scene).quantize(palette=colours, dither=Image.Dither.NONE)
 
 
 def _colours(record: TrialRecord) -> Image.Image:
