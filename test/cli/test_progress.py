@@ -43,12 +43,16 @@ def text_of(console: Console) -> str:
     return console.file.getvalue()
 
 
+def _after(second: int) -> str:
+    return f'after {second}'
+
+
 def lines_of(console: Console, clock: Clock, until_s: int) -> list[str]:
     """The lines that are shown when progress is offered every second."""
     shown = Progress(console)
     for second in range(until_s + 1):
         clock.now_s = 100.0 + second
-        shown.show(lambda second=second: f'after {second}')
+        shown.show(partial(_after, second))
     return text_of(console).splitlines()
 
 
@@ -100,7 +104,7 @@ def until_cancelled(cancel: CancelToken) -> str:
 
 
 def test_a_limit_of_one_tower_does_not_end_the_others() -> None:
-    jobs = [Job('a', at_once(1)), Job('b', too_large), Job('c', at_once(3))]
+    jobs: list[Job[object]] = [Job('a', at_once(1)), Job('b', too_large), Job('c', at_once(3))]
     outcomes = list(each('work', jobs, 3, progress=Progress(a_log())))
     assert [outcome[:3] for outcome in outcomes] == [
         ('a', 1, ''),
@@ -110,7 +114,7 @@ def test_a_limit_of_one_tower_does_not_end_the_others() -> None:
 
 
 def test_the_time_limit_holds_for_each_tower() -> None:
-    jobs = [Job('a', until_cancelled), Job('b', at_once(2)), Job('c', until_cancelled)]
+    jobs: list[Job[object]] = [Job('a', until_cancelled), Job('b', at_once(2)), Job('c', until_cancelled)]
     outcomes = list(each('work', jobs, 3, 0.01, Progress(a_log())))
     problem = 'not finished within the time limit of 0.01 s'
     assert [outcome[:3] for outcome in outcomes] == [

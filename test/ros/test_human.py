@@ -99,11 +99,12 @@ class Proposer(Peer):
                 return
 
 
-def is_under_way(board: Board, chosen: SubgoalChosen, state: WorldState) -> bool:
+def is_under_way(spec: TrialSpec, chosen: SubgoalChosen, state: WorldState) -> bool:
     """Whether the subgoal leads on from a state, or begins after it."""
     if chosen.sequence > state.sequence:
         return True
-    return chosen.progress(board, states_of(board, state.observations)).is_open
+    seen = history(spec.task.board, state.observations)
+    return chosen.progress(spec, seen).is_open
 
 
 def test_whole_graph_with_a_person(graph: Graph, tmp_path: Path) -> None:
