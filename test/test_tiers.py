@@ -39,7 +39,7 @@ def guards(source: Source) -> Iterator[tuple[str, str | None]]:
     def visit(node: ast.AST, guard: str | None) -> Iterator[tuple[str, str | None]]:
         match node:
             case ast.With(items=[ast.withitem(ast.Call(ast.Name('extra'), [ast.Constant(name)]))]):
-                guard = name
+                guard = str(name)
             case ast.Import(names):
                 yield from ((alias.name.partition('.')[0], guard) for alias in names)
             case ast.ImportFrom(str(module), _, 0):
