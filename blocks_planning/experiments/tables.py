@@ -17,13 +17,16 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-import pyarrow as pa
 
 from blocks_planning.board.geometry import Board
+from blocks_planning.extras import extra
 from blocks_planning.subgoals.decision import Decision
 from blocks_planning.trials.flat import flat_settings, flat_values
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.spec import FAMILIES, TrialSpec
+
+with extra('experiments'):
+    import pyarrow as pa
 
 FAILED = 'failed'
 

@@ -137,6 +137,11 @@ class Strategy(Protocol):
     asks_person: ClassVar[bool]
 
     @property
+    def is_blind(self) -> bool:
+        """Whether a plan is carried out to its end, whatever is observed meanwhile."""
+        ...
+
+    @property
     def hides_costs(self) -> bool:
         """Whether planning costs must not be shown while a trial runs."""
         ...
@@ -150,6 +155,16 @@ class Strategy(Protocol):
 
     def chains(self, situation: Situation) -> Sequence[Chain]:
         """The chains of a decision's candidates, in order. Asks nothing of ``known``."""
+        ...
+
+    def sequences(self, situation: Situation) -> int:
+        """Number of chains that exist; more than :meth:`chains` lists if those are a sample."""
+        ...
+
+    def rated(
+        self, candidates: Sequence[Candidate], situation: Situation
+    ) -> tuple[Candidate, ...]:
+        """The candidates with the probabilities of being chosen, if the choice is by those."""
         ...
 
     def value(self, cells: int, planning_cost: int) -> float | None:

@@ -11,9 +11,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from blocks_planning.settings import setting
+from blocks_planning.subgoals.aiming import aim_setting, regions_to_aim_at
 from blocks_planning.subgoals.decision import Chain, Situation
 from blocks_planning.subgoals.planner import Planner, value_of
 from blocks_planning.subgoals.regions import Region, Rows
+
+SURPRISES = ('replan', 'blind')
 
 
 @dataclass(frozen=True)
@@ -27,10 +30,21 @@ class FullSubgoals(Planner):
     lam: float = setting(
         1.0, 'Cost per evaluated state, in cells.', name='lambda', above=0, unit='cells / state'
     )
+    aim: str = aim_setting()
+    surprise: str = setting(
+        'replan', 'What follows an observation that the plan did not expect.', choices=SURPRISES
+    )
+
+    @property
+    def is_blind(self) -> bool:
+        """Whether the plan is carried out to its end, whatever is observed."""
+        return self.surprise == 'blind'
 
     def chains(self, situation: Situation) -> Sequence[Chain]:
-        """Every rising sequence of regions that ends in the whole silhouette."""
-        return list(rising_sequences(Rows().regions(situation.task, situation.built)))
+        """Every rising sequence of regions that ends in the last; a blind planner plans once."""
+        if self.is_blind and situation.decisions:
+            return []
+        return list(rising_sequences(regions_to_aim_at(Rows(), situation, self.aim)))
 
     def value(self, cells: int, planning_cost: int) -> float | None:
         """V = r - lambda * c [cells]."""

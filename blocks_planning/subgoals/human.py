@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from blocks_planning.settings import setting
@@ -67,10 +67,7 @@ class Human(Planner):
     def _decided(self, chains: list[Chain], situation: Situation) -> Decision:
         weighed = [self._weigh(chain, situation) for chain in chains]
         candidates = tuple(one for one in weighed if isinstance(one, Candidate))
-        chosen = self.choose(candidates, situation)
-        subgoals = () if chosen is None else tuple(self.plan(chains[chosen], situation))
-        cost = self.considered(candidates)
-        return Decision(situation.built, candidates, chosen, subgoals, cost, len(chains))
+        return replace(self.decision(candidates, situation), sequences=len(candidates))
 
 
 def used(situation: Situation, decision: Decision) -> tuple[Proposal, ...]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from blocks_planning.subgoals.aiming import aim_setting, regions_to_aim_at
 from blocks_planning.subgoals.decision import Candidate, Chain, Situation
 from blocks_planning.subgoals.planner import Planner, first_solved
 from blocks_planning.subgoals.regions import Rows
@@ -16,10 +17,11 @@ class NoSubgoals(Planner):
     """Action-level search for the whole tower (paper, "no subgoal planning")."""
 
     name: ClassVar[str] = 'none'
+    aim: str = aim_setting()
 
     def chains(self, situation: Situation) -> Sequence[Chain]:
         """The whole silhouette."""
-        regions = Rows().regions(situation.task, situation.built)
+        regions = regions_to_aim_at(Rows(), situation, self.aim)
         return [(region,) for region in regions[-1:]]
 
     def value(self, cells: int, planning_cost: int) -> float | None:

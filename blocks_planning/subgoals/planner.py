@@ -40,6 +40,11 @@ class Planner(Configured):
     asks_person: ClassVar[bool] = False
 
     @property
+    def is_blind(self) -> bool:
+        """See :class:`Strategy`."""
+        return False
+
+    @property
     def hides_costs(self) -> bool:
         """Whether planning costs must not be shown while a trial runs."""
         return False
@@ -51,6 +56,16 @@ class Planner(Configured):
     def value(self, cells: int, planning_cost: int) -> float | None:
         """See :class:`Strategy`."""
         raise NotImplementedError
+
+    def sequences(self, situation: Situation) -> int:
+        """See :class:`Strategy`. As many as there are chains."""
+        return len(self.chains(situation))
+
+    def rated(
+        self, candidates: Sequence[Candidate], situation: Situation
+    ) -> tuple[Candidate, ...]:
+        """See :class:`Strategy`. Without probabilities."""
+        return tuple(candidates)
 
     def choose(self, candidates: Sequence[Candidate], situation: Situation) -> int | None:
         """See :class:`Strategy`. The best candidate, uniformly among equals."""
@@ -81,15 +96,19 @@ class Planner(Configured):
                 candidates.append(weighed)
         if missing:
             return list(missing)
+        return self.decision(self.rated(candidates, situation), situation)
+
+    def decision(self, candidates: tuple[Candidate, ...], situation: Situation) -> Decision:
+        """The decision between candidates whose queries are all answered."""
         chosen = self.choose(candidates, situation)
-        subgoals = () if chosen is None else tuple(self.plan(chains[chosen], situation))
+        chain = () if chosen is None else candidates[chosen].regions
         return Decision(
             built=situation.built,
-            candidates=tuple(candidates),
+            candidates=candidates,
             chosen=chosen,
-            subgoals=subgoals,
+            subgoals=tuple(self.plan(chain, situation)),
             subgoal_planning_cost=self.considered(candidates),
-            sequences=len(chains),
+            sequences=self.sequences(situation),
         )
 
     def _weigh(self, chain: Chain, situation: Situation) -> Candidate | Query:

@@ -9,10 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Protocol
 
-from blocks_planning.board.geometry import Mask
+from blocks_planning.board.geometry import MAX_SIDE, Mask
 from blocks_planning.board.task import Task
 from blocks_planning.families import Registry
-from blocks_planning.settings import Configured
+from blocks_planning.settings import Configured, setting
+from blocks_planning.subgoals.rectangles import rectangles
+
+MAX_CELLS = MAX_SIDE * MAX_SIDE
 
 
 class Label(NamedTuple):
@@ -49,10 +52,15 @@ class RegionFamily(Protocol):
 
     name: ClassVar[str]
 
-    def regions(self, task: Task, built: Mask) -> list[Region]:
+    def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
         """The regions that can come next in a state, in the order in which ties are drawn.
 
         Each adds at least one cell to the state. No two of them have the same target.
+
+        Args:
+            task: the silhouette, of which every cell that is not built can still be filled.
+            built: the filled cells.
+            partial: whether a region may leave out cells that are built.
         """
         ...
 
@@ -63,23 +71,47 @@ class Rows(Configured):
 
     name: ClassVar[str] = 'rows'
 
-    def regions(self, task: Task, built: Mask) -> list[Region]:
+    def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
         """The different regions that strictly contain the state, the lowest first.
 
         Of several heights with the same region the lowest is listed. The last region is the whole
-        silhouette, unless the state has a cell outside it: then there is none.
+        silhouette, unless the state has a cell outside it: then there is none. With ``partial``
+        every height counts below which the state lacks a cell.
         """
         regions: list[Region] = []
-        previous = 0
+        listed = built
         for height in range(1, task.board.height + 1):
             cells = task.rows(height)
-            if cells != previous and cells != built and not built & ~cells:
+            target = built | cells
+            if target != listed and (partial or target == cells):
                 regions.append(Region(rows_label(height), cells))
-            previous = cells
+                listed = target
         return regions
 
 
-REGIONS = Registry('regions', 'blocks_planning.regions', (Rows,))
+@dataclass(frozen=True)
+class Rectangles(Configured):
+    """The target cells inside a rectangle; see :mod:`.rectangles` for which ones count."""
+
+    name: ClassVar[str] = 'rectangles'
+    min_cells: int = setting(
+        2, 'Fewest target cells of a rectangle.', least=1, most=MAX_CELLS, unit='cells'
+    )
+    max_cells: int = setting(
+        0,
+        'Most target cells of a rectangle; 0: three quarters of the silhouette.',
+        least=0,
+        most=MAX_CELLS,
+        unit='cells',
+    )
+
+    def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
+        """See :class:`RegionFamily`. By rising row, column, height and width."""
+        found = rectangles(task, built, self.min_cells, self.max_cells)
+        return [Region(Label(*label), cells) for label, cells in found]
+
+
+REGIONS = Registry('regions', 'blocks_planning.regions', (Rows, Rectangles))
 
 
 def rows_label(height: int) -> Label:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from blocks_planning.settings import member, setting
+from blocks_planning.subgoals.aiming import aim_setting, regions_to_aim_at
 from blocks_planning.subgoals.decision import Chain, Situation
 from blocks_planning.subgoals.planner import Planner, value_of
 from blocks_planning.subgoals.regions import REGIONS, RegionFamily
@@ -29,11 +30,12 @@ class Scoping(Planner):
     commit: str = setting(
         'subgoal', 'Part of the plan executed before the next decision.', choices=COMMITS
     )
+    aim: str = aim_setting()
     regions: RegionFamily = member('rows', REGIONS, 'Regions that are considered as subgoals.')
 
     def chains(self, situation: Situation) -> Sequence[Chain]:
         """Each region alone."""
-        regions = self.regions.regions(situation.task, situation.built)
+        regions = regions_to_aim_at(self.regions, situation, self.aim)
         return [(region,) for region in regions]
 
     def value(self, cells: int, planning_cost: int) -> float | None:

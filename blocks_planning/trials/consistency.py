@@ -93,7 +93,7 @@ class Consistency:
         if (state.status is TrialStatus.SUCCESS) != is_complete:
             raise Contradiction(f'status: {state.status.value} is not what the placements lead to')
         if state.status is TrialStatus.STUCK:
-            reached = status_of(self.spec.task, state.built)
+            reached = status_of(self.spec, state.placements, state.built)
             if reached is not TrialStatus.STUCK:
                 raise Contradiction('status: something can still be placed')
 

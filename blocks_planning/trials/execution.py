@@ -15,6 +15,9 @@ current subgoal's plan leads through::
 * the state is unchanged: the order was lost, and is given again;
 * the state is any other: a *surprise*. The plan no longer holds, and a new decision is due.
 
+A strategy may ignore surprises (``is_blind``). Then an order counts as done when a block has landed,
+wherever that was, and the execution ends early only where the next order is impossible.
+
 The subgoal ends when ``execute`` placements are done. Then the next subgoal of the decision
 becomes current, or, after the last one, a new decision is due.
 """
@@ -30,7 +33,8 @@ from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.subgoals.decision import Decision, Subgoal
 from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
-from blocks_planning.worlds.observation import states_of
+from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.worlds.observation import Observations, states_of
 
 
 class Progress(NamedTuple):
@@ -55,14 +59,37 @@ class Progress(NamedTuple):
         return not self.is_done and not self.is_surprised
 
 
-def follow(way: Sequence[Mask], start: int, states: Sequence[Mask]) -> Progress:
-    """Follow the observed states along a way.
+class History(NamedTuple):
+    """The observations of a trial, and the filled cells after each; the index is the sequence."""
+
+    observations: Observations
+    states: list[Mask]
+
+
+def history(board: Board, observations: Observations) -> History:
+    """The history of some observations."""
+    return History(observations, states_of(board, observations))
+
+
+def progress_of(
+    spec: TrialSpec, built: Mask, subgoal: Subgoal | None, start: int, seen: History
+) -> Progress:
+    """How far a subgoal has been executed.
 
     Args:
-        way: the states before and after each placement to execute.
+        spec: of the trial.
+        built: the state from which it was planned.
+        subgoal: what is executed; None if the planner gave up.
         start: sequence of the state in which execution began.
-        states: of all observations; the list index is the sequence.
+        seen: what has been observed.
     """
+    if subgoal is not None and spec.strategy.is_blind:
+        return _follow_blindly(spec.task.board, subgoal, start, seen)
+    return _follow(way_of(spec.task.board, built, subgoal), start, seen.states)
+
+
+def _follow(way: Sequence[Mask], start: int, states: Sequence[Mask]) -> Progress:
+    """Follow the observed states along a way, up to its end or a surprise."""
     if states[start] != way[0]:
         return Progress(0, start, is_done=False, is_surprised=True)
     done, last = 0, len(way) - 1
@@ -75,6 +102,19 @@ def follow(way: Sequence[Mask], start: int, states: Sequence[Mask]) -> Progress:
         if done == last:
             return Progress(done, sequence, is_done=True, is_surprised=False)
     return Progress(done, len(states) - 1, is_done=False, is_surprised=False)
+
+
+def _follow_blindly(board: Board, subgoal: Subgoal, start: int, seen: History) -> Progress:
+    """Count the orders that placed a block, wherever it landed."""
+    done = 0
+    for sequence in range(start, len(seen.states)):
+        if sequence > start:
+            done += bool(seen.observations[sequence].landed)
+        if done == subgoal.execute:
+            return Progress(done, sequence, is_done=True, is_surprised=False)
+    following = subgoal.placements[done].placement
+    is_possible = rules.drop(board, seen.states[-1], following) is not None
+    return Progress(done, len(seen.states) - 1, is_done=False, is_surprised=not is_possible)
 
 
 @dataclass(frozen=True)
@@ -116,13 +156,9 @@ class SubgoalChosen:
         """The state from which the current subgoal was planned."""
         return self.decision.subgoals[self.index - 1].target if self.index else self.decision.built
 
-    def way(self, board: Board) -> list[Mask]:
-        """The states that execution leads through, the first and the last included."""
-        return way_of(board, self.built, self.subgoal)
-
-    def progress(self, board: Board, states: Sequence[Mask]) -> Progress:
-        """How far the current subgoal has been executed; ``states`` of all observations."""
-        return follow(self.way(board), self.sequence, states)
+    def progress(self, spec: TrialSpec, seen: History) -> Progress:
+        """How far the current subgoal has been executed."""
+        return progress_of(spec, self.built, self.subgoal, self.sequence, seen)
 
     def begun(self, sequence: int, executed: int) -> SubgoalChosen:
         """The same decisions when the ``executed``-th subgoal of the last one has been begun."""
@@ -159,13 +195,13 @@ class Span(NamedTuple):
 
 def spans_of(record: TrialRecord) -> Iterator[Span]:
     """Every subgoal that was begun in a trial, in order, and how far it was executed."""
-    board = record.spec.task.board
-    states = states_of(board, record.observations)
+    spec = record.spec
+    seen = history(spec.task.board, record.observations)
     for number, entry in enumerate(record.decisions):
         start, built = entry.sequence, entry.decision.built
         for index, subgoal in enumerate(entry.decision.subgoals[: entry.executed]):
-            if start >= len(states):
+            if start >= len(seen.states):
                 break
-            progress = follow(way_of(board, built, subgoal), start, states)
+            progress = progress_of(spec, built, subgoal, start, seen)
             yield Span(number, index, start, progress)
             start, built = progress.sequence, subgoal.target

@@ -47,13 +47,22 @@ class Fields:
         """A number, or null."""
         return None if self.get(key) is None else float(self.get(key, float))
 
-    def item(self, number: object, items: Sequence[T]) -> T:
-        """The item of a list that a key names by its index."""
-        if type(number) is not int or not 0 <= number < len(items):
-            raise RecordError(
-                f'{self.place}: a region must be an index below {len(items)}, got {short(number)}'
-            )
-        return items[number]
+    def item(self, key: str, items: Sequence[T]) -> T:
+        """The item of a list that the value of a key names by its index."""
+        (item,) = self._named((self.get(key),), key, items)
+        return item
+
+    def items(self, key: str, items: Sequence[T]) -> tuple[T, ...]:
+        """The items of a list that a list of indices names."""
+        return self._named(self.get(key, list), key, items)
+
+    def _named(self, numbers: Sequence[object], key: str, items: Sequence[T]) -> tuple[T, ...]:
+        found = []
+        for number in numbers:
+            if type(number) is not int or not 0 <= number < len(items):
+                raise self.error(key, f'must be indices below {len(items)}')
+            found.append(items[number])
+        return tuple(found)
 
     def numbers(self, key: str, length: int | None = None) -> tuple[int, ...]:
         """A list of small whole numbers."""

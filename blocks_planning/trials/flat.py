@@ -62,12 +62,7 @@ class FlatSetting:
         return ', '.join(f'{name} {one.default}' for name, one in self.members.items())
 
 
-def every(cls: type[Any]) -> bool:
-    """Want every member."""
-    return True
-
-
-def flat_settings(wanted: Callable[[type[Any]], bool] = every) -> list[FlatSetting]:
+def flat_settings(wanted: Callable[[type[Any]], bool] | None = None) -> list[FlatSetting]:
     """All settings of all members of all families, or of the members that are ``wanted``."""
     found: dict[tuple[str, str], FlatSetting] = {}
     for family, member, one in _settings(wanted):
@@ -80,10 +75,10 @@ def flat_settings(wanted: Callable[[type[Any]], bool] = every) -> list[FlatSetti
     return list(found.values())
 
 
-def _settings(wanted: Callable[[type[Any]], bool]) -> Iterator[tuple[str, str, Setting]]:
+def _settings(wanted: Callable[[type[Any]], bool] | None) -> Iterator[tuple[str, str, Setting]]:
     for family, registry in FAMILIES.items():
         for name, cls in registry.items():
-            if wanted(cls):
+            if wanted is None or wanted(cls):
                 for one in all_settings(cls):
                     yield family, name, one
 

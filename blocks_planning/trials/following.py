@@ -8,10 +8,9 @@ solve depends on nothing else.
 from __future__ import annotations
 
 from collections.abc import MutableMapping
-from functools import lru_cache
 
 from blocks_planning.board import rules
-from blocks_planning.board.geometry import Mask
+from blocks_planning.board.blocks import Placement
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.search.result import Problem, SolveResult
 from blocks_planning.search.solve import solve
@@ -19,10 +18,8 @@ from blocks_planning.subgoals.decision import Decision, Query, Situation, Subgoa
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
-from blocks_planning.trials.world import status_of
-from blocks_planning.worlds.observation import Observation, mask_of, standing
-
-_status_of = lru_cache(maxsize=4096)(status_of)
+from blocks_planning.trials.world import TOO_MANY, status_of
+from blocks_planning.worlds.observation import MAX_OBSERVATIONS, Blocks, Observation, mask_of
 
 
 def follow(spec: TrialSpec, answers: MutableMapping[Query, SolveResult]) -> TrialRecord:
@@ -39,41 +36,88 @@ def follow(spec: TrialSpec, answers: MutableMapping[Query, SolveResult]) -> Tria
     """
     if not spec.world.simulates:
         raise ConfigurationError(f'world {spec.world.name} cannot be simulated')
-    observations: list[Observation] = [Observation(landed=spec.built)]
+    board = _Board(spec)
     decisions: list[DecisionRecord] = []
-    status = _status_of(spec.task, mask_of(spec.task.board, spec.built))
+    status, reason = board.status(), ''
     while status is TrialStatus.BUILDING:
-        situation = _situation(spec, observations, len(decisions), answers)
-        decision = _decide(spec, situation, answers)
-        start, executed = len(observations) - 1, 0
-        built = situation.built
+        decision = _decide(spec, board.situation(len(decisions), answers), answers)
+        start, executed = len(board.observations) - 1, 0
         if decision.chosen is None:
             status = TrialStatus.GAVE_UP
         for subgoal in decision.subgoals:
             executed += 1
-            built = _carry_out(spec, built, subgoal, observations)
-            status = _status_of(spec.task, built)
-            if status is not TrialStatus.BUILDING or built != subgoal.target:
+            status, goes_on = board.carry_out(subgoal)
+            if status is not TrialStatus.BUILDING or not goes_on:
                 break
         decisions.append(DecisionRecord(start, decision, executed))
-    return TrialRecord(spec, status, tuple(observations), tuple(decisions))
+    if status is TrialStatus.CANCELLED:
+        reason = TOO_MANY
+    observations = tuple(board.observations)
+    return TrialRecord(spec, status, observations, tuple(decisions), reason=reason)
 
 
-def _situation(
-    spec: TrialSpec,
-    observations: list[Observation],
-    decisions: int,
-    answers: MutableMapping[Query, SolveResult],
-) -> Situation:
-    blocks = standing(observations)
-    return Situation(
-        task=spec.task,
-        built=mask_of(spec.task.board, blocks),
-        seed=spec.seed,
-        known=answers,
-        blocks=blocks,
-        decisions=decisions,
-    )
+class _Board:
+    """The board of a trial, as its world shows it."""
+
+    def __init__(self, spec: TrialSpec) -> None:
+        self._spec = spec
+        self.observations = [Observation(landed=spec.built)]
+        self._blocks = spec.built
+        self._built = mask_of(spec.task.board, spec.built)
+
+    def status(self) -> TrialStatus:
+        """How the board stands; cancelled if there may be no more observations."""
+        found = status_of(self._spec, self._blocks, self._built)
+        is_full = len(self.observations) >= MAX_OBSERVATIONS
+        if found is TrialStatus.BUILDING and is_full:
+            return TrialStatus.CANCELLED
+        return found
+
+    def situation(self, decisions: int, known: MutableMapping[Query, SolveResult]) -> Situation:
+        """What the planner decides on."""
+        return Situation(
+            task=self._spec.task,
+            built=self._built,
+            seed=self._spec.seed,
+            known=known,
+            blocks=self._blocks,
+            decisions=decisions,
+        )
+
+    def carry_out(self, subgoal: Subgoal) -> tuple[TrialStatus, bool]:
+        """Execute a subgoal; return how the board stands, and whether the next one may follow."""
+        spec = self._spec
+        plan = subgoal.placements[: subgoal.execute]
+        if spec.world.obeys:
+            self._see([Observation(placed.placement, (placed,)) for placed in plan], plan)
+            return self.status(), self._built == subgoal.target
+        for placed in plan:
+            if rules.drop(spec.task.board, self._built, placed.placement) is None:
+                return self.status(), False  # only a blind plan comes to this
+            before = self._built
+            status = TrialStatus.BUILDING
+            while self._built == before and status is TrialStatus.BUILDING:
+                status = self._order(placed.placement)
+            if status is not TrialStatus.BUILDING:
+                return status, False
+            expected = before | rules.cells_of(spec.task.board, placed)
+            if self._built != expected and not spec.strategy.is_blind:
+                return status, False
+        return self.status(), self._built == subgoal.target or spec.strategy.is_blind
+
+    def _order(self, placement: Placement) -> TrialStatus:
+        """Give one order; a lost block changes nothing, and is ordered again."""
+        spec = self._spec
+        seen = spec.world.carry_out(
+            spec.task, self._built, placement, spec.seed, len(self.observations)
+        )
+        self._see([seen], seen.landed)
+        return self.status()
+
+    def _see(self, observations: list[Observation], landed: Blocks) -> None:
+        self.observations += observations
+        self._blocks += landed
+        self._built |= mask_of(self._spec.task.board, landed)
 
 
 def _decide(
@@ -88,24 +132,3 @@ def _decide(
         for query in answer:
             problem = Problem(spec.task, *query)
             answers[query] = solve(problem, spec.search, spec.seed, spec.budget)
-
-
-def _carry_out(
-    spec: TrialSpec, built: Mask, subgoal: Subgoal, observations: list[Observation]
-) -> Mask:
-    """Carry out what is to be executed of a plan, up to a surprise; return the state after it."""
-    way = rules.states_along(spec.task.board, built, subgoal.placements[: subgoal.execute])
-    for placed, expected in zip(subgoal.placements, way[1:], strict=False):
-        if spec.world.obeys:
-            observations.append(Observation(placed.placement, (placed,)))
-            continue
-        before = built
-        while built == before:  # a lost block changes nothing, and is ordered again
-            seen = spec.world.carry_out(
-                spec.task, built, placed.placement, spec.seed, len(observations)
-            )
-            observations.append(seen)
-            built |= mask_of(spec.task.board, seen.landed)
-        if built != expected:
-            return built
-    return way[-1]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.execution import SubgoalChosen, history
 from blocks_planning.trials.messages import (
     CancelTrial,
     Message,
@@ -15,7 +15,6 @@ from blocks_planning.trials.messages import (
 )
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.status import TrialStatus
-from blocks_planning.worlds.observation import states_of
 
 
 @dataclass(frozen=True)
@@ -101,5 +100,5 @@ def _leads_to(chosen: SubgoalChosen, trial: TrialStarted, state: WorldState) -> 
     """Whether no other decision is due between a subgoal and a state."""
     if chosen.subgoal is None or chosen.sequence >= state.sequence:
         return False
-    board = trial.spec.task.board
-    return chosen.progress(board, states_of(board, state.observations)).sequence == state.sequence
+    seen = history(trial.spec.task.board, state.observations)
+    return chosen.progress(trial.spec, seen).sequence == state.sequence

@@ -164,7 +164,8 @@ def read_towers(top: Mapping[str, Located]) -> list[Tower]:
     """The towers of the keys ``stimuli`` and ``library``."""
     library = PAPER_LIBRARY
     if 'library' in top:
-        library = top['library'].check(lambda: parse_library(read_text(top['library'])))
+        blocks = read_text(top['library'])
+        library = top['library'].check(lambda: parse_library(blocks))
     return [tower for address in top['stimuli'].items() for tower in _towers(address, library)]
 
 
@@ -186,7 +187,8 @@ def read_budget(top: Mapping[str, Located]) -> int:
 
 
 def _towers(address: Located, library: Library) -> list[Tower]:
-    stimuli = address.check(lambda: find_stimuli(read_text(address)))
+    text = read_text(address)
+    stimuli = address.check(lambda: find_stimuli(text))
     return [Tower(s.name, Task(s.board, s.silhouette, library)) for s in stimuli]
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from blocks_planning.search.result import SolveResult
 from blocks_planning.subgoals.decision import Query
-from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.execution import SubgoalChosen, history
 from blocks_planning.trials.messages import (
     Message,
     PlaceBlock,
@@ -20,7 +20,6 @@ from blocks_planning.trials.messages import (
     TrialStarted,
     WorldState,
 )
-from blocks_planning.worlds.observation import states_of
 
 MOST_SOLVING = 1 << 16
 """Most queries that are open at once; excess queries are dropped, and the selector asks again."""
@@ -116,6 +115,6 @@ def _next_placement(trial: TrialStarted, state: WorldState, chosen: SubgoalChose
     """Index in the plan of the placement that the latest state calls for; None: there is none."""
     if chosen.sequence > state.sequence:
         return None
-    board = trial.spec.task.board
-    progress = chosen.progress(board, states_of(board, state.observations))
+    seen = history(trial.spec.task.board, state.observations)
+    progress = chosen.progress(trial.spec, seen)
     return progress.done if progress.is_open else None

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from blocks_planning.board.geometry import Mask
 from blocks_planning.search.result import SolveResult
 from blocks_planning.subgoals.decision import Decision, Query, Situation
 from blocks_planning.subgoals.human import used
@@ -17,7 +16,7 @@ from blocks_planning.subgoals.proposals import (
     proposed_at,
     target_of,
 )
-from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.execution import History, SubgoalChosen, history
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
@@ -31,7 +30,7 @@ from blocks_planning.trials.messages import (
 from blocks_planning.trials.record import DecisionRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
-from blocks_planning.worlds.observation import history_of, states_of
+from blocks_planning.worlds.observation import standing
 
 
 @dataclass(frozen=True)
@@ -127,16 +126,16 @@ def _go_on(
     That is one decision at most, unless this selector was started in the middle of a trial and
     knows nothing. Then it decides as it has decided before.
     """
-    states = states_of(spec.task.board, state.observations)
+    seen = history(spec.task.board, state.observations)
     chosen = memory.chosen
     while True:
-        due = due_decision(spec, chosen, states)
+        due = due_decision(spec, chosen, seen)
         if due is None or (due == state.sequence and state.status is not TrialStatus.BUILDING):
             break
-        if chosen is not None and is_followed_on(spec, chosen, states):
+        if chosen is not None and is_followed_on(spec, chosen, seen):
             chosen = chosen.begun(due, executed=chosen.index + 2)
             continue
-        situation = _situation(memory, spec, state, states, chosen, due)
+        situation = _situation(memory, spec, seen, chosen, due)
         answer = spec.strategy.decide(situation)
         if not isinstance(answer, Decision):
             return _ask(replace(memory, chosen=chosen), state, answer)
@@ -145,42 +144,39 @@ def _go_on(
     return replace(memory, chosen=chosen), said
 
 
-def due_decision(
-    spec: TrialSpec, chosen: SubgoalChosen | None, states: Sequence[Mask]
-) -> int | None:
+def due_decision(spec: TrialSpec, chosen: SubgoalChosen | None, seen: History) -> int | None:
     """The sequence of the state in which something must be chosen next; None: not yet."""
     if chosen is None:
         return 0
-    if chosen.subgoal is None or chosen.sequence >= len(states):
+    if chosen.subgoal is None or chosen.sequence >= len(seen.states):
         return None
-    progress = chosen.progress(spec.task.board, states)
+    progress = chosen.progress(spec, seen)
     return None if progress.is_open else progress.sequence
 
 
-def is_followed_on(spec: TrialSpec, chosen: SubgoalChosen, states: Sequence[Mask]) -> bool:
-    """Whether the current subgoal is filled and its decision has another one."""
-    progress = chosen.progress(spec.task.board, states)
-    is_filled = chosen.subgoal is not None and states[progress.sequence] == chosen.subgoal.target
-    return progress.is_done and is_filled and chosen.has_next
+def is_followed_on(spec: TrialSpec, chosen: SubgoalChosen, seen: History) -> bool:
+    """Whether the current subgoal is done and the next one of its decision is to be executed."""
+    progress = chosen.progress(spec, seen)
+    if chosen.subgoal is None or not progress.is_done or not chosen.has_next:
+        return False
+    is_filled = seen.states[progress.sequence] == chosen.subgoal.target
+    return is_filled or spec.strategy.is_blind
 
 
 def _situation(
     memory: Memory,
     spec: TrialSpec,
-    state: WorldState,
-    states: Sequence[Mask],
+    seen: History,
     chosen: SubgoalChosen | None,
     sequence: int,
 ) -> Situation:
-    history = history_of(state.observations[: sequence + 1])
-    *_, blocks = history
     return Situation(
         task=spec.task,
-        built=states[sequence],
+        built=seen.states[sequence],
         seed=spec.seed,
         known=memory.known,
         proposals=proposed_at(memory.proposals, sequence),
-        blocks=blocks,
+        blocks=standing(seen.observations[: sequence + 1]),
         decisions=0 if chosen is None else len(chosen.decisions),
     )
 

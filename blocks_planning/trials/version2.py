@@ -6,7 +6,7 @@ from typing import Any
 
 from blocks_planning.board.blocks import Block, Placement, parse_library
 from blocks_planning.board.geometry import Board
-from blocks_planning.board.stimuli import parse_silhouettes
+from blocks_planning.board.pictures import parse_silhouettes
 from blocks_planning.board.task import Task
 from blocks_planning.errors import RecordError
 from blocks_planning.search.result import SolveStatus
@@ -103,7 +103,7 @@ def _region(fields: Fields) -> Region:
 
 def _candidate(fields: Fields, regions: list[Region]) -> Candidate:
     return Candidate(
-        regions=tuple(fields.item(number, regions) for number in fields.get('regions', list)),
+        regions=fields.items('regions', regions),
         cells=fields.count('cells'),
         planning_cost=fields.count('planning_cost'),
         value=fields.number('value'),
@@ -114,7 +114,7 @@ def _candidate(fields: Fields, regions: list[Region]) -> Candidate:
 
 def _subgoal(fields: Fields, regions: list[Region]) -> Subgoal:
     return Subgoal(
-        region=fields.item(fields.get('region'), regions),
+        region=fields.item('region', regions),
         target=fields.mask('target'),
         execute=fields.count('execute'),
         placements=fields.placements(),

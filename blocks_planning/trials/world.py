@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from blocks_planning.board import rules
 from blocks_planning.board.geometry import Mask
@@ -19,8 +20,10 @@ from blocks_planning.trials.messages import (
 )
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
-from blocks_planning.worlds.observation import Observation, Observations, states_of
+from blocks_planning.worlds.observation import MAX_OBSERVATIONS, Blocks, Observation, Observations
 from blocks_planning.worlds.world import ImpossibleOrder
+
+TOO_MANY = f'the trial would need more than {MAX_OBSERVATIONS} observations'
 
 
 @dataclass(frozen=True)
@@ -31,8 +34,21 @@ class Memory:
     state: WorldState | None = None
 
 
-def status_of(task: Task, built: Mask) -> TrialStatus:
-    """How a board stands: success, stuck or building."""
+def status_of(spec: TrialSpec, blocks: Blocks, built: Mask) -> TrialStatus:
+    """How a board stands: success, stuck, collapsed or building.
+
+    Args:
+        spec: silhouette, library and world.
+        blocks: that stand.
+        built: the cells that they fill.
+    """
+    if not spec.world.holds(blocks):
+        return TrialStatus.COLLAPSED
+    return _status_of_cells(spec.task, built)
+
+
+@lru_cache(maxsize=4096)
+def _status_of_cells(task: Task, built: Mask) -> TrialStatus:
     if built == task.silhouette:
         return TrialStatus.SUCCESS
     if next(rules.legal_placements(task, built, task.silhouette), None) is None:
@@ -42,8 +58,8 @@ def status_of(task: Task, built: Mask) -> TrialStatus:
 
 def state_after(trial_id: str, spec: TrialSpec, observations: Observations) -> WorldState:
     """The state of a trial's board after some observations."""
-    built = states_of(spec.task.board, observations)[-1]
-    return observed(trial_id, spec.task.board, observations, status_of(spec.task, built))
+    state = observed(trial_id, spec.task.board, observations, TrialStatus.BUILDING)
+    return replace(state, status=status_of(spec, state.placements, state.built))
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
@@ -88,6 +104,11 @@ def _carry_out(
     memory: Memory, spec: TrialSpec, state: WorldState, action: PlaceBlock
 ) -> tuple[Memory, tuple[Message, ...]]:
     sequence = state.sequence + 1
+    if sequence >= MAX_OBSERVATIONS:
+        failed = PlacementOutcome(
+            state.trial_id, state.sequence, None, TOO_MANY, PlacementCode.FAILED
+        )
+        return memory, (failed,)
     try:
         seen = spec.world.carry_out(spec.task, state.built, action.placement, spec.seed, sequence)
     except ImpossibleOrder as error:
@@ -97,12 +118,16 @@ def _carry_out(
         )
     after = state_after(state.trial_id, spec, (*state.observations, seen))
     landed = seen.landed[0] if seen.landed else None
-    outcome = PlacementOutcome(state.trial_id, state.sequence, landed, code=_code_of(seen))
+    outcome = PlacementOutcome(
+        state.trial_id, state.sequence, landed, code=_code_of(seen, after.status)
+    )
     return replace(memory, state=after), (outcome, after)
 
 
-def _code_of(seen: Observation) -> PlacementCode:
+def _code_of(seen: Observation, status: TrialStatus) -> PlacementCode:
     """What became of the order that an observation is of."""
+    if status is TrialStatus.COLLAPSED:
+        return PlacementCode.COLLAPSED
     if seen.is_as_ordered:
         return PlacementCode.PLACED
     return PlacementCode.SLIPPED if seen.landed else PlacementCode.LOST

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from math import inf
 from typing import Any
 
@@ -141,30 +141,45 @@ def numbers_of(candidate: Candidate) -> list[str]:
     ]
 
 
-def regions_of(candidate: Candidate, width: int, signs: Signs = palette.UNICODE) -> str:
+def common_kind(candidates: Sequence[Candidate]) -> str:
+    """The kind of all labels of some candidates; '' if there are several kinds, or none."""
+    kinds = {region.label.kind for candidate in candidates for region in candidate.regions}
+    return kinds.pop() if len(kinds) == 1 else ''
+
+
+def regions_of(
+    candidate: Candidate, width: int, signs: Signs = palette.UNICODE, kind: str = ''
+) -> str:
     """The labels of a candidate's regions in at most ``width`` characters, the last left out.
 
+    Args:
+        candidate: whose regions.
+        width: at most [characters].
+        signs: that can be shown.
+        kind: left out of labels, because a heading names it.
+
+    >>> from blocks_planning.subgoals.regions import Label
     >>> rows = [Region(Label('rows', (height,)), 0) for height in (1, 3, 8)]
     >>> regions_of(Candidate(tuple(rows), 9, 9, None, SolveStatus.SOLVED), width=10)
     'rows 1 3 8'
-    >>> regions_of(Candidate(tuple(rows), 9, 9, None, SolveStatus.SOLVED), width=9)
-    'rows 1 3…'
+    >>> regions_of(Candidate(tuple(rows), 9, 9, None, SolveStatus.SOLVED), 4, kind='rows')
+    '1 3…'
     """
-    text = chain_text(candidate.regions)
+    text = chain_text(candidate.regions, kind)
     if len(text) <= width:
         return text
     return text[:width].rpartition(' ')[0] + signs.more
 
 
-def chain_text(regions: Iterable[Region]) -> str:
+def chain_text(regions: Iterable[Region], kind: str = '') -> str:
     """The labels of regions; a kind is named once for several regions in a row.
 
+    >>> from blocks_planning.subgoals.regions import Label
     >>> chain_text([Region(Label('rows', (2,)), 0), Region(Label('rectangle', (0, 2, 3, 1)), 0)])
     'rows 2 rectangle 0,2,3,1'
     """
     words: list[str] = []
-    kind = ''
     for label, _ in regions:
-        words += [str(label)] if label.kind != kind else [str(label).removeprefix(f'{kind} ')]
+        words.append(str(label).removeprefix(f'{kind} ') if label.kind == kind else str(label))
         kind = label.kind
     return ' '.join(words)

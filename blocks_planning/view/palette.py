@@ -110,6 +110,7 @@ class Signs(NamedTuple):
         frames: of blocks; consecutive subgoals have different ones.
         target: a cell of the silhouette that is not filled.
         region: such a cell, if the current subgoal fills it.
+        halves: of a compact board: the upper half filled, the lower half, both.
         ground: below the board.
         marker: the candidate that was chosen.
         more: where something was left out.
@@ -119,6 +120,7 @@ class Signs(NamedTuple):
     frames: tuple[Frame, ...]
     target: str
     region: str
+    halves: str
     ground: str
     marker: str
     more: str
@@ -138,6 +140,7 @@ UNICODE = Signs(
     ),
     target='░',
     region='▒',
+    halves='▀▄█',
     ground='▔',
     marker='▶',
     more='…',
@@ -152,6 +155,7 @@ ASCII = Signs(
     ),
     target='.',
     region=':',
+    halves='^_#',
     ground='"',
     marker='>',
     more='~',

@@ -86,7 +86,9 @@ def _lines_about(decision: Decision, width: int, height: int, signs: Signs) -> l
     numbers = [['r', 'c', 'V', 'status'], *map(captions.numbers_of, candidates)]
     widths = [max(map(len, column)) for column in zip(*numbers, strict=True)]
     room = max(width - sum(widths) - 2 * len(widths) - 2, 4)
-    rows = ['region', *(captions.regions_of(one, room, signs) for one in candidates)]
+    kind = captions.common_kind(decision.candidates)
+    regions = (captions.regions_of(one, room, signs, kind) for one in candidates)
+    rows = [kind or 'region', *regions]
     widest = max(map(len, rows))
     marks = [' ', *(signs.marker if index == decision.chosen else ' ' for index in shown)]
     lines = [Text(f'{captions.counted(total, "candidate")}: cells r, cost c, value V')]

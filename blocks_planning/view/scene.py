@@ -16,7 +16,7 @@ from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Mask
 from blocks_planning.board.task import Task
 from blocks_planning.subgoals.decision import Decision, Subgoal
-from blocks_planning.trials.execution import Progress, Span, SubgoalChosen, spans_of
+from blocks_planning.trials.execution import Progress, Span, SubgoalChosen, history, spans_of
 from blocks_planning.trials.messages import (
     Message,
     TrialEnded,
@@ -27,7 +27,7 @@ from blocks_planning.trials.messages import (
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
-from blocks_planning.worlds.observation import Observations, states_of
+from blocks_planning.worlds.observation import Observation, Observations
 
 FOUND = -1
 """The subgoal of a block that no subgoal placed: it stood at the start, or appeared by itself."""
@@ -46,7 +46,7 @@ class Scene:
 
     Attributes:
         trial: which one.
-        observations: of the board so far; empty before the first.
+        observations: of the board so far.
         chosen: the subgoal that was begun last, with all decisions so far.
         status: building, until the trial is over.
         reason: why the trial was cancelled.
@@ -95,8 +95,8 @@ class Scene:
         """How far the current subgoal has been executed; None if there is none yet."""
         if self.subgoal is None or self.chosen is None or self.chosen.sequence > self.sequence:
             return None
-        board = self.task.board
-        return self.chosen.progress(board, states_of(board, self.observations) or [0])
+        seen = history(self.task.board, self.observations or (Observation(),))
+        return self.chosen.progress(self.spec, seen)
 
     @cached_property
     def landed(self) -> tuple[BuiltBlock, ...]:
@@ -169,7 +169,12 @@ class Scene:
 
 def scene_of(spec: TrialSpec) -> Scene:
     """The scene before anything has happened."""
-    return Scene(TrialStarted(spec.trial_id, spec))
+    return first_scene(TrialStarted(spec.trial_id, spec))
+
+
+def first_scene(trial: TrialStarted) -> Scene:
+    """The scene of a trial that has just started: the board as its specification says."""
+    return Scene(trial, (Observation(landed=trial.spec.built),))
 
 
 def scene_after(scene: Scene, message: Message) -> Scene:
@@ -179,9 +184,9 @@ def scene_after(scene: Scene, message: Message) -> Scene:
     ignored. States and subgoals may come in either order.
     """
     if message.trial_id != scene.trial.trial_id:
-        return Scene(message) if isinstance(message, TrialStarted) else scene
+        return first_scene(message) if isinstance(message, TrialStarted) else scene
     match message:
-        case WorldState() if len(message.observations) > len(scene.observations):
+        case WorldState() if _is_news(message, scene):
             return replace(scene, observations=message.observations)
         case SubgoalChosen() if scene.chosen is None or message.sequence > scene.chosen.sequence:
             return replace(scene, chosen=message)
@@ -190,14 +195,21 @@ def scene_after(scene: Scene, message: Message) -> Scene:
     return scene
 
 
+def _is_news(state: WorldState, scene: Scene) -> bool:
+    """Whether a state has more observations, or the board was not found as it was specified."""
+    known, said = len(scene.observations), len(state.observations)
+    return said > known or (said == known == 1 and state.observations != scene.observations)
+
+
 def scenes_of(record: TrialRecord) -> Iterator[Scene]:
     """Replay a trial.
 
     Yields:
-        A scene for the start, for every observation, for every subgoal begun (or given up), and
-        for the end.
+        A scene for the start, for every subgoal begun (or given up), for every observation after
+        the first, and for the end.
     """
-    return accumulate(_messages_of(record), scene_after, initial=scene_of(record.spec))
+    start = replace(scene_of(record.spec), observations=record.observations[:1])
+    return accumulate(_messages_of(record), scene_after, initial=start)
 
 
 def last_scene(record: TrialRecord) -> Scene:
@@ -211,7 +223,8 @@ def _messages_of(record: TrialRecord) -> Iterator[Message]:
     trial_id, board = record.spec.trial_id, record.spec.task.board
     chosen = {message.sequence: message for message in _choices(record)}
     for count in range(1, len(record.observations) + 1):
-        yield observed(trial_id, board, record.observations[:count], TrialStatus.BUILDING)
+        if count > 1:
+            yield observed(trial_id, board, record.observations[:count], TrialStatus.BUILDING)
         if count - 1 in chosen:
             yield chosen[count - 1]
     yield TrialEnded(trial_id, record.status, record.reason)

@@ -8,6 +8,7 @@ from statistics import fmean
 from typing import Literal
 
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -17,7 +18,10 @@ from blocks_planning.subgoals.proposals import ProposalKind
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import FAMILIES, TrialSpec
 from blocks_planning.trials.status import TrialStatus
+from blocks_planning.view.names import broken
 
+_NUMBERS_OF_PROPOSALS = 50
+"""Width of the columns of numbers in the table of proposals [characters]."""
 _COLUMNS = ('blocks', 'subgoals', 'action cost', 'subgoal cost', 'solution cost')
 
 
@@ -51,14 +55,15 @@ def print_summary(records: Sequence[TrialRecord], console: Console | None = None
         max(len(text) for text in (*title.split(), *(row[index] for row in rows)))
         for index, title in enumerate(titles, start=1)
     ]
-    longest = max(len(text) for text in ('stimulus', *(row[0] for row in rows)))
+    longest = max(cell_len(text) for text in ('stimulus', *(row[0] for row in rows)))
     room = console.width - sum(widths) - 2 * (len(titles) + 1) - 1
-    table.add_column('stimulus', overflow='fold', width=max(8, min(longest, room)))
-    for title, width in zip(titles, widths, strict=True):
+    width = max(8, min(longest, room))
+    table.add_column('stimulus', overflow='fold', width=width)
+    for title, size in zip(titles, widths, strict=True):
         justify: Literal['left', 'right'] = 'right' if title in _COLUMNS else 'left'
-        table.add_column(title, justify=justify, width=width)
+        table.add_column(title, justify=justify, width=size)
     for stimulus, *rest in rows:
-        table.add_row(Text(stimulus), *rest)
+        table.add_row(Text(broken(stimulus, width)), *rest)
     console.print(_planner(records[0]), highlight=False)
     console.print(table)
 
@@ -79,13 +84,15 @@ def print_proposals(records: Sequence[TrialRecord], console: Console | None = No
     table.add_column('stimulus', overflow='fold')
     for title in ('proposed', 'built', 'withdrawn', 'thinking', 'each'):
         table.add_column(title, justify='right', no_wrap=True)
+    console = console or Console()
+    room = max(8, (console.width - _NUMBERS_OF_PROPOSALS) // 2)
     for record in records:
         if record.spec.strategy.asks_person:
             participant = str(settings_of(record.spec.strategy).get('participant', ''))
-            row = [participant, record.spec.stimulus, *_proposed(record)]
-            table.add_row(*map(Text, row))
+            names = (broken(name, room) for name in (participant, record.spec.stimulus))
+            table.add_row(*map(Text, [*names, *_proposed(record)]))
     if table.row_count:
-        (console or Console()).print(table)
+        console.print(table)
 
 
 def _proposed(record: TrialRecord) -> list[str]:

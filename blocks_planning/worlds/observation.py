@@ -15,7 +15,7 @@ from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placed, Placement
 from blocks_planning.board.geometry import Board, Mask
 
-MAX_OBSERVATIONS = 4096
+MAX_OBSERVATIONS = 1024
 """Most observations of a trial, the first included; a trial that would need more is ended."""
 
 Blocks = tuple[Placed, ...]

@@ -31,7 +31,7 @@ from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 from source_imports import ROOT
 
-from blocks_planning.board.stimuli import read_file
+from blocks_planning.board.pictures import read_file
 from blocks_planning.cli import main as command
 from blocks_planning.errors import BlocksPlanningError
 from blocks_planning.experiments.reading import read_sweep

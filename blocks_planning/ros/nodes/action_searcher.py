@@ -25,9 +25,9 @@ from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import PartNode
 from blocks_planning.ros.runtime.process import run
 from blocks_planning.ros.wire.graph import ACTION_SEARCHER
-from blocks_planning.search.compiled import warm_up
 from blocks_planning.search.result import CancelToken, Problem, SolveStatus
 from blocks_planning.search.solve import solve
+from blocks_planning.search.warming import warm_up
 from blocks_planning.trials import searcher
 from blocks_planning.trials.messages import (
     Message,

@@ -42,10 +42,8 @@ from blocks_planning.view.web import session
 from blocks_planning.view.web.frame import Seen
 from blocks_planning.view.web.guards import address_of
 from blocks_planning.view.web.health import NOTHING, health_after
-from blocks_planning.view.web.live import Mailbox
 from blocks_planning.view.web.proposing import Posted, Refused, judge, parse
 from blocks_planning.view.web.queue import Queue
-from blocks_planning.view.web.server import PageServer
 
 HOST = Parameter('host', '127.0.0.1', 'Name or number to listen at; a token off this machine.')
 PORT = Parameter('port', 0, 'Port to listen at; 0: any that is free.', (0, 65535))
@@ -69,8 +67,12 @@ class TrialView(PartNode):
         """See :class:`PartNode`.
 
         Raises:
-            ConfigurationError: also if the page can't be served there.
+            ConfigurationError: also if the page can't be served there, or what serves it is not
+                installed.
         """
+        from blocks_planning.view.web.live import Mailbox
+        from blocks_planning.view.web.server import PageServer
+
         super().__init__(TRIAL_VIEW, session, PARAMETERS, **options)
         script, participant = self.values['script'], self.values['participant']
         specs = read_script(Path(script), participant) if script else []

@@ -43,7 +43,7 @@ def wrong_observations(record: TrialRecord) -> Iterator[str]:
 
 def wrong_status(record: TrialRecord) -> Iterator[str]:
     """A status that the last observation and the last decision do not lead to."""
-    reached = status_of(record.spec.task, record.built)
+    reached = status_of(record.spec, record.placements, record.built)
     over = reached is not TrialStatus.BUILDING
     gave_up = bool(record.decisions) and record.decisions[-1].decision.chosen is None
     # A trial may be cancelled before its end is seen; one that was over at the start, too.

@@ -7,6 +7,7 @@ strategy of a certain name decides.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.subgoals.decision import Candidate, Chain, Decision, Situation
@@ -47,6 +48,7 @@ def wrong_decision(record: TrialRecord, index: int) -> Iterator[str]:
             yield f'candidate {number}: {sentence}'
     yield from _wrong_choice(record, entry, situation)
     yield from _wrong_costs(record, entry.decision)
+    yield from _wrong_ratings(record, entry.decision, situation)
     yield from _wrong_subgoals(record, entry.decision, chains)
 
 
@@ -88,8 +90,16 @@ def _wrong_costs(record: TrialRecord, decision: Decision) -> Iterator[str]:
     expected = record.spec.strategy.considered(decision.candidates)
     if decision.subgoal_planning_cost != expected:
         yield f'subgoal planning cost {expected} states, not {decision.subgoal_planning_cost}'
-    if decision.sequences < len(decision.candidates):
-        yield f'{decision.sequences} sequences cannot have {len(decision.candidates)} candidates'
+
+
+def _wrong_ratings(record: TrialRecord, decision: Decision, situation: Situation) -> Iterator[str]:
+    strategy = record.spec.strategy
+    unrated = [replace(candidate, probability=None) for candidate in decision.candidates]
+    if strategy.rated(unrated, situation) != decision.candidates:
+        yield 'the probabilities of its candidates are not those of the strategy'
+    sequences = strategy.sequences(situation)
+    if decision.sequences != sequences:
+        yield f'{sequences} sequences exist, not {decision.sequences}'
 
 
 def _wrong_subgoals(record: TrialRecord, decision: Decision, chains: list[Chain]) -> Iterator[str]:

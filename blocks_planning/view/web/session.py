@@ -21,6 +21,7 @@ from blocks_planning.subgoals.proposals import (
     proposed_at,
     target_of,
 )
+from blocks_planning.trials.execution import history
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
@@ -32,8 +33,7 @@ from blocks_planning.trials.messages import (
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view.captions import shortlist
-from blocks_planning.view.scene import Scene, scene_after
-from blocks_planning.worlds.observation import states_of
+from blocks_planning.view.scene import Scene, first_scene, scene_after
 
 MOST_PAST = 500
 """Trials that ran and can be replayed; the oldest go first."""
@@ -110,7 +110,7 @@ def session_after(session: Session, message: Message) -> Session:
     scene = session.scene
     if scene is None or message.trial_id != scene.trial.trial_id:
         if isinstance(message, TrialStarted):
-            return Session(Scene(message), past=_closed(session).past)
+            return Session(first_scene(message), past=_closed(session).past)
         return replace(session, past=_past_after(session.past, message))
     match message:
         case SearchAnswer():
@@ -233,5 +233,5 @@ def _is_executing(scene: Scene, state: WorldState) -> bool:
         return True
     if chosen.sequence > state.sequence:
         return True
-    board = scene.task.board
-    return chosen.progress(board, states_of(board, state.observations)).is_open
+    seen = history(scene.task.board, state.observations)
+    return chosen.progress(scene.spec, seen).is_open
