@@ -103,7 +103,9 @@ class Consistency:
         if chosen.proposals and not self.spec.strategy.asks_person:
             raise Contradiction('proposals: no person takes part')
         begun = [(entry.sequence, entry.decision.built) for entry in decisions]
-        for sequence, built in [*begun, (chosen.sequence, chosen.built)]:
+        if not self.spec.strategy.is_blind:  # else a later subgoal begins wherever the plan led
+            begun.append((chosen.sequence, chosen.built))
+        for sequence, built in begun:
             if sequence < len(self._states) and self._states[sequence] != built:
                 raise Contradiction(f'built: is not the state of observation {sequence}')
         if chosen.sequence < decisions[-1].sequence:

@@ -9,8 +9,11 @@ import os
 from pathlib import Path
 from typing import Any
 
+import bag_builders  # noqa: F401  finds ROS packages
 import pytest
 from graphs import local_lines, record_lines, run_graph, write_script
+
+from blocks_planning.ros.bagging.bags import trials_of
 
 _SMALL: list[dict[str, Any]] = [
     {  # 10
@@ -35,6 +38,20 @@ _SMALL: list[dict[str, Any]] = [
         'strategies': [{'name': 'scoping', 'lambda': 0.001}, {'name': 'full', 'lambda': 0.1}],
         'budget': 5000,
         'first_seed': 2**64 - 1,
+        'seeds': 1,
+    },
+    {  # 18
+        'stimuli': ['cogsci2021/5', 'cogsci2021/13'],
+        'searches': [{'name': 'bfs', 'depth': 2}],
+        'strategies': [
+            {'name': 'scoping', 'aim': 'most'},
+            {'name': 'full', 'surprise': ['replan', 'blind']},
+        ],
+        'worlds': [
+            {'name': 'simulated', 'slip': 0.3, 'loss': [0.0, 0.4]},
+            {'name': 'simulated', 'blocks': 'loose'},
+        ],
+        'budget': 5000,
         'seeds': 1,
     },
 ]
@@ -62,6 +79,16 @@ _LARGE: list[dict[str, Any]] = [
         'first_seed': 11,
         'seeds': 2,
     },
+    {  # 96
+        'stimuli': ['cogsci2021'],
+        'searches': [{'name': 'bfs', 'depth': 3}],
+        'strategies': [
+            {'name': 'scoping', 'aim': 'most'},
+            {'name': 'full', 'surprise': ['replan', 'blind']},
+        ],
+        'worlds': [{'name': 'simulated', 'slip': 0.1, 'loss': [0.0, 0.2]}],
+        'seeds': 1,
+    },
     {  # 20
         'stimuli': ['cogsci2021/3', 'cogsci2021/12'],
         'library': '1x1,3x1,1x3,2x2',
@@ -77,6 +104,9 @@ SCRIPTS = _LARGE if os.environ.get('BLOCKS_PLANNING_PARITY') == 'all' else _SMAL
 @pytest.mark.parametrize('script', SCRIPTS, ids=map(str, range(len(SCRIPTS))))
 def test_records_are_equal_byte_for_byte(script: dict[str, Any], tmp_path: Path) -> None:
     path = write_script(tmp_path, **script)
-    done = run_graph(path, '--out', tmp_path / 'out')
+    done = run_graph(path, '--out', tmp_path / 'out', '--bag', tmp_path / 'bag')
     assert done.returncode in (0, 1), done.stderr
     assert record_lines(tmp_path / 'out') == local_lines(path)
+    trials = list(trials_of(tmp_path / 'bag'))
+    assert [trial.record.to_line() for trial in trials] == record_lines(tmp_path / 'out')
+    assert [list(trial.contradictions()) for trial in trials] == [[] for _ in trials]

@@ -30,12 +30,12 @@ import rclpy.utilities
 from rclpy.context import Context
 from rclpy.exceptions import NameValidationException, ParameterException
 from rclpy.executors import Executor
-from rclpy.experimental import EventsExecutor
 from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from blocks_planning.errors import BlocksPlanningError, ConfigurationError
+from blocks_planning.ros.runtime.executor import MessageExecutor
 from blocks_planning.ros.runtime.processes import PARENT_VARIABLE, tell_ready
 from blocks_planning.ros.runtime.single import claim_name
 
@@ -83,8 +83,7 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         sys.stderr.write(f'Error: {" ".join(str(error).split())}\n')
         _leave(BAD_INPUT)
     failures: list[BaseException] = []
-    executor = EventsExecutor()  # the others make their set of things to wait for anew each time
-    executor.add_node(node)
+    executor = MessageExecutor(node)
     spinning = threading.Thread(
         target=_spin,
         args=(executor, stop, failures, getattr(node, 'drain_s', 0.0)),
