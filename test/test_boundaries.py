@@ -2,8 +2,9 @@
 
 ::
 
-    cli  ->  ros  ->  view | experiments | analysis  ->  trials  ->  subgoals  ->  search
-         ->  board  ->  families  ->  located | resources | settings  ->  errors
+    cli  ->  ros  ->  view | experiments | analysis | robot  ->  fitting  ->  people | towers
+         ->  trials  ->  worlds  ->  subgoals  ->  search  ->  board  ->  families
+         ->  extras | located | resources | settings  ->  errors
 """
 
 from __future__ import annotations
@@ -15,13 +16,16 @@ from source_imports import PACKAGE, Source, imports, package_sources
 
 LAYERS = [
     {'errors'},
-    {'located', 'resources', 'settings'},
+    {'extras', 'located', 'resources', 'settings'},
     {'families'},
     {'board'},
     {'search'},
     {'subgoals'},
+    {'worlds'},
     {'trials'},
-    {'view', 'experiments', 'analysis'},
+    {'people', 'towers'},
+    {'fitting'},
+    {'view', 'experiments', 'analysis', 'robot'},
     {'ros'},
     {'cli'},
     {'__main__'},
@@ -31,6 +35,7 @@ ROS = re.compile(r'rclpy|rclpy_.*|ament_.*|launch(_.*)?|rosidl_.*|.*_(msgs|srvs|
 CONFINED = {
     'aiohttp': {'view'},
     'matplotlib': {'analysis', 'view'},
+    'mujoco': {'robot'},
     'click': {'cli', 'view'},
     'rich': {'cli', 'view'},
 }
@@ -102,6 +107,8 @@ def test_imports_point_to_the_ground(source: Source) -> None:
         ('cli', 'from std_srvs.srv import Trigger', 'std_srvs belongs in ros/'),
         ('trials.local', 'import matplotlib.pyplot as plt', 'matplotlib belongs in analysis and'),
         ('search.solve', 'from numba import njit', 'numba belongs in'),
+        ('view.picture', 'import mujoco', 'mujoco belongs in robot'),
+        ('robot.film', 'from ..view import picture', 'robot must not know view'),
         ('trials.local', 'import rich', 'rich belongs in cli and view'),
         ('trials.local', 'from click import echo', 'click belongs in cli and view'),
         ('helpers', 'from . import errors', 'helpers has no place in LAYERS yet'),

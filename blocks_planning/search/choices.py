@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,9 @@ from blocks_planning.search.compiled import tables_of
 from blocks_planning.search.kernels import breadth_first, lookahead, random_placement
 from blocks_planning.search.result import CancelToken, Problem
 from blocks_planning.search.searches import BreadthFirst
+
+CHUNK = 1 << 15
+"""Most states from which random placements are spread at a time."""
 
 
 class Way(NamedTuple):
@@ -113,6 +117,13 @@ def spread_at_random(problem: Problem, filled: int, layer: Layer) -> dict[int, L
         filled + int(size): join_layers([Layer(after[areas == size], chances[areas == size])])
         for size in np.unique(areas)
     }
+
+
+def chunks_of(layer: Layer) -> Iterator[Layer]:
+    """A layer in parts of at most ``CHUNK`` states, to bound the memory of what follows them."""
+    for first in range(0, len(layer.chances), CHUNK):
+        part = slice(first, first + CHUNK)
+        yield Layer(layer.states[part], layer.chances[part])
 
 
 def join_layers(layers: list[Layer]) -> Layer:

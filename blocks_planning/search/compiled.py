@@ -238,13 +238,22 @@ def placements_of(problem: Problem, moves: list[int]) -> tuple[Placed, ...]:
     return tuple(placements)
 
 
-def count_states(task: Task, depth: int, cancel: CancelToken) -> list[int] | None:
+def count_states(
+    task: Task, depth: int, cancel: CancelToken, counts: np.ndarray | None = None
+) -> list[int] | None:
     """Tree nodes at depths 1 to n, summed, for n = 1 to ``depth``; None if cancelled.
 
     It is what a breadth-first search from the empty board evaluates when nothing is found.
+
+    Args:
+        task: silhouette and blocks.
+        depth: n, 1 or more.
+        cancel: ends it from another thread.
+        counts: int64 (depth,), all 0: each number is written there as soon as it is known, also
+            if the count is cancelled later.
     """
     nowhere = tables_of(task, task.silhouette)._replace(target=-1)
-    counts = np.zeros(depth, np.int64)
+    counts = np.zeros(depth, np.int64) if counts is None else counts
     search = lookahead.make_search(nowhere, depth + 1)
     empty = pack([0], nowhere.cells)
     finished = breadth_first.count_from(search, nowhere, empty, cancel.flag, counts)

@@ -82,7 +82,8 @@ def test_order_is_strategies_searches_stimuli_seeds(tmp_path: Path) -> None:
     found = []
     for trial in trials:
         said = trial.to_json()
-        strategy = (said['strategy'], said['lambda'], said['commit'])
+        settings = said['strategy_settings']
+        strategy = (said['strategy'], settings.get('lambda'), settings.get('commit'))
         search = (said['search'], said['search_settings'])
         found.append((strategy, search, said['stimulus'], said['seed'], said['budget']))
     assert found == expected
@@ -167,6 +168,7 @@ def test_mistake_is_named_where_it_stands(
         read(tmp_path, GOOD.replace(old, new, 1))
     text = str(refused.value)
     assert text.startswith(f'{tmp_path / "trials.yaml"}, {place}')
+    assert text.count('trials.yaml') == 1
     assert re.search(said, text)
     assert '\n' not in text
 

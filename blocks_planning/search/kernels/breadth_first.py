@@ -93,15 +93,16 @@ def choices_from(search, tables, state, filled, cancel, moves, weights):
         weights: where the number of best tree nodes behind each is written, of the same size.
 
     Returns:
-        (states evaluated, ending, number of placements written). The ending is 1 if a complete
-        state was taken up, which is then built whole; 0 if not; -1 if cancelled.
+        (states evaluated, ending, number of placements written). The ending is n > 0 if a
+        complete state was taken up, at the end of ``search.path[:n]``, which is then built whole;
+        0 if not; -1 if cancelled.
     """
     shadow = load(state, 0)
     evaluated, ending = look_ahead(search, tables, shadow, filled, cancel)
     if ending == BROKEN_OFF:
         return evaluated, -1, 0
     if ending > 0:
-        return evaluated, 1, 0
+        return evaluated, ending, 0
     legal_moves(tables, shadow, search.moves, 0)
     written = 0
     for first in range(search.firsts[0]):

@@ -1,0 +1,94 @@
+"""Set points of the arm: axes that speed up and slow down within bounds, and the gripper."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from blocks_planning.robot.scene import DAMPING, STIFFNESS, TIMESTEP
+from blocks_planning.robot.sizes import Sizes
+
+ACCELERATION = 2.0
+"""Of an axis on its way [m/s2]."""
+BRAKING = 5.0
+"""Of an axis that has to stop at once [m/s2]."""
+FAST = 0.5
+"""Of an axis with nothing in its way [m/s]: it can stop in 0.1 s."""
+SLOW, GENTLE = 0.02, 0.1
+"""Speed [m/s] and acceleration [m/s2] towards a contact: the motor feels the contact and nothing
+else."""
+FINGER_SPEED = 0.12
+"""[m/s]"""
+
+
+@dataclass
+class Axis:
+    """Where the set point of an axis is [m], and how fast it moves [m/s]."""
+
+    position: float = 0.0
+    speed: float = 0.0
+
+    @property
+    def command(self) -> float:
+        """For the servo, ahead of the set point by what its damping makes it lag [m]."""
+        return self.position + self.speed * DAMPING / STIFFNESS
+
+    def towards(
+        self, target: float, fastest: float = FAST, acceleration: float = ACCELERATION
+    ) -> None:
+        """Move on for one time step."""
+        distance = target - self.position
+        sign = 1.0 if distance > 0 else -1.0
+        wanted = sign * min(fastest, (2 * acceleration * abs(distance)) ** 0.5)
+        self._change_speed(wanted, acceleration)
+        if abs(self.speed) * TIMESTEP >= abs(distance) and self.speed * distance >= 0:
+            self.position, self.speed = target, 0.0
+        else:
+            self.position += self.speed * TIMESTEP
+
+    def stop(self) -> None:
+        """Slow down for one time step."""
+        self._change_speed(0.0, BRAKING)
+        self.position += self.speed * TIMESTEP
+
+    def _change_speed(self, wanted: float, rate: float) -> None:
+        most = rate * TIMESTEP
+        self.speed += max(-most, min(most, wanted - self.speed))
+
+
+@dataclass
+class Arm:
+    """The set points: tool position, and how far the fingers are closed [m]."""
+
+    x: Axis = field(default_factory=Axis)
+    z: Axis = field(default_factory=Axis)
+    grip: float = 0.0
+
+    @property
+    def commands(self) -> tuple[float, float, float, float]:
+        """For the servos of the joints of the scene, in their order."""
+        return self.x.command, self.z.command, self.grip, self.grip
+
+    def grip_towards(self, target: float) -> None:
+        """Close or open the fingers for one time step."""
+        most = FINGER_SPEED * TIMESTEP
+        self.grip += max(-most, min(most, target - self.grip))
+
+    def stop(self) -> None:
+        """Slow both axes down for one time step; the fingers stay."""
+        self.x.stop()
+        self.z.stop()
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether no axis is on its way."""
+        return self.x.speed == 0 and self.z.speed == 0
+
+
+def closed(sizes: Sizes) -> float:
+    """Set point of the fingers that hold a block."""
+    return face(sizes) + sizes.overclosing
+
+
+def face(sizes: Sizes) -> float:
+    """Where the fingers touch a block."""
+    return sizes.open_gap + sizes.gap / 2

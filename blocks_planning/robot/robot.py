@@ -1,0 +1,185 @@
+"""The robot: takes orders, moves on tick by tick, sees, and can be saved and restored.
+
+::
+
+    robot = Robot(board, RobotSettings(glue=False), seed=7)
+    robot.order(Placement(Block(2, 1), column=3))
+    while (progress := robot.step()).report is None:
+        print(progress.phase)
+    print(robot.perceive().placed)
+"""
+
+from __future__ import annotations
+
+from blocks_planning.board import rules
+from blocks_planning.board.blocks import Placement
+from blocks_planning.board.geometry import Board
+from blocks_planning.errors import InvalidInput
+from blocks_planning.robot import noise, saving
+from blocks_planning.robot.behaviour import Behaviour
+from blocks_planning.robot.camera import Camera
+from blocks_planning.robot.fitting import Perceived, fit
+from blocks_planning.robot.phases import Progress, Report
+from blocks_planning.robot.scene import TIMESTEP, Body
+from blocks_planning.robot.seeing import see_poses
+from blocks_planning.robot.settings import CAMERA, RobotSettings
+from blocks_planning.robot.simulation import Simulation
+from blocks_planning.robot.sizes import Sizes
+
+STEPS_PER_TICK = 5
+TICK = STEPS_PER_TICK * TIMESTEP
+"""Time that passes in one :meth:`Robot.step` [s]."""
+TOLERANCE = 0.25
+"""Share of a cell by which a block may miss its cells without a warning."""
+NOISE_TOLERANCE = 3
+"""Standard deviations of the noise that are allowed for in heights."""
+
+
+class Robot:
+    """An arm beside an empty board.
+
+    Args:
+        board: its size.
+        settings: the robot, its blocks, its noise; None: all as usual.
+        seed: of all noise, 0 to 2**64 - 1.
+
+    Raises:
+        ConfigurationError: if the camera is asked for and nothing can be rendered here.
+
+    Attributes:
+        board: its size.
+        settings: as given.
+        seed: as given.
+        simulation: for pictures, joints and poses.
+        seen: what was perceived last.
+    """
+
+    def __init__(self, board: Board, settings: RobotSettings | None = None, seed: int = 0) -> None:
+        settings = settings or RobotSettings()
+        self.board = board
+        self.settings = settings
+        self.seed = seed
+        self.seen = Perceived()
+        self.simulation = Simulation(Sizes.of(board, settings), settings)
+        self._behaviour = Behaviour(self.simulation, NOISE_TOLERANCE * settings.pose_noise_m)
+        self._camera = Camera(self.simulation) if settings.perception == CAMERA else None
+        self._perceptions = 0
+
+    # --- act --------------------------------------------------------------------------------
+
+    def order(self, placement: Placement) -> None:
+        """Begin to place a block; :meth:`step` goes on with it.
+
+        Whether it can come to rest on the board is judged by what was perceived last.
+
+        Raises:
+            InvalidInput: if another order is being carried out.
+        """
+        if self.is_busy:
+            raise InvalidInput(
+                'the robot carries out another order: wait for its report, or cancel it first'
+            )
+        self._clear_feeder()
+        landed = rules.drop(self.board, self.seen.built(self.board), placement)
+        number = self._present(placement)
+        row = None if landed is None else landed.row
+        self._behaviour.begin(placement, number, row, self._highest())
+
+    def step(self) -> Progress:
+        """Let ``TICK`` pass; the arm moves on if there is an order."""
+        report: Report | None = None
+        for _ in range(STEPS_PER_TICK):
+            report = self._behaviour.step() or report
+        progress = self._behaviour.progress
+        if report is not None:
+            self.simulation.refresh()
+        return Progress(progress.phase, progress.fraction, progress.time, report)
+
+    def cancel(self) -> None:
+        """Stop the arm. It is at rest in less than 0.2 s; then :meth:`step` gives the report.
+
+        What it holds it goes on holding; the next order brings it back to the feeder first.
+        """
+        self._behaviour.cancel()
+
+    def place(self, placement: Placement) -> Report:
+        """Carry an order out to its end."""
+        self.order(placement)
+        while True:
+            report = self.step().report
+            if report is not None:
+                return report
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether an order is being carried out."""
+        return self._behaviour.is_busy
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether an axis is on its way."""
+        return not self._behaviour.memory.arm.is_at_rest
+
+    @property
+    def time(self) -> float:
+        """Time of the simulation [s]."""
+        return self.simulation.time
+
+    def _clear_feeder(self) -> None:
+        """Take away what was not placed, except from the fingers."""
+        held = self._held()
+        self.simulation.remove(
+            body.number
+            for body in self.simulation.free
+            if self.simulation.is_at_feeder(body.number) and body.number != held
+        )
+
+    def _present(self, placement: Placement) -> int:
+        spread = self.settings.grip_noise_m
+        [off] = noise.normal(self.seed, 'grip', self.simulation.next_number)
+        x = self.simulation.sizes.feeder(placement.block)
+        return self.simulation.add(placement.block, x + spread * off)
+
+    def _held(self) -> int | None:
+        return self._behaviour.memory.number if self._behaviour.is_holding else None
+
+    def _highest(self) -> float:
+        rows = (placed.row + placed.height for placed in self.seen.placed)
+        return max(rows, default=0) * self.settings.cell_m
+
+    # --- perceive ---------------------------------------------------------------------------
+
+    def perceive(self) -> Perceived:
+        """Look at the board; it is also what the next order goes by."""
+        bodies = self._looked_at()
+        if self._camera is None:
+            sightings = see_poses(self.simulation, bodies, self.seed, self._perceptions)
+        else:
+            sightings = self._camera.see(bodies)
+        self._perceptions += 1
+        self.seen = fit(self.board, sightings, TOLERANCE)
+        return self.seen
+
+    def _looked_at(self) -> list[Body]:
+        """Every block but those at the feeder and in the fingers."""
+        held = self._held()
+        return [
+            body
+            for body in self.simulation.bodies
+            if body.number != held and not self.simulation.is_at_feeder(body.number)
+        ]
+
+    # --- save -------------------------------------------------------------------------------
+
+    def state(self) -> bytes:
+        """All that the future depends on, in the middle of an act too."""
+        return saving.pack(self.simulation, self._behaviour.memory, self.seen, self._perceptions)
+
+    def restore(self, data: bytes) -> None:
+        """Go on where :meth:`state` was taken, by a robot with the same board and settings.
+
+        Raises:
+            InvalidInput: if the data are of another robot or damaged; nothing is changed then.
+        """
+        saved = saving.unpack(self.simulation, data)
+        self._behaviour.memory, self.seen, self._perceptions = saved

@@ -1,0 +1,61 @@
+"""Blocks as they are seen by their poses, with noise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import atan2, degrees, pi
+
+from blocks_planning.robot import noise
+from blocks_planning.robot.coverage import Sighting, cover, rectangle
+from blocks_planning.robot.scene import Body, Pose
+from blocks_planning.robot.simulation import Simulation
+
+LEAST_UPRIGHT = 0.87
+"""Cosine of the angle by which a block may lean out of the plane of the board: 30 degrees."""
+
+
+def see_poses(
+    simulation: Simulation, bodies: Iterable[Body], seed: int, count: int
+) -> list[Sighting]:
+    """Sightings of blocks by their poses.
+
+    Args:
+        simulation: where they are.
+        bodies: those to look at.
+        seed: of the noise.
+        count: number of earlier perceptions.
+    """
+    return [_see(simulation, body, seed, count) for body in bodies]
+
+
+def _see(simulation: Simulation, body: Body, seed: int, count: int) -> Sighting:
+    pose, sizes = simulation.pose(body.number), simulation.sizes
+    half_x, _, half_z = sizes.half(body.block)
+    spread = simulation.settings.pose_noise_m
+    across, up, turn = noise.normal(seed, 'perceive', count, body.number, size=3)
+    angle = angle_of(pose) + spread * turn / max(half_x, half_z)
+    x, y, z = pose.position
+    centre = x + spread * across, z + spread * up
+    # The gap belongs to the cells that a block fills.
+    half = half_x + sizes.gap / 2, half_z
+    quarter = pi / 2
+    return Sighting(
+        body.number,
+        body.block,
+        cover(rectangle(centre, half, angle), sizes.cell),
+        degrees(abs(angle - quarter * round(angle / quarter))),
+        abs(y - sizes.middle) > sizes.cell / 2 or abs(depth_of(pose)) < LEAST_UPRIGHT,
+    )
+
+
+def angle_of(pose: Pose) -> float:
+    """How far a block is turned in the plane of the board [rad], counterclockwise as seen."""
+    w, x, y, z = pose.orientation
+    # Where the block's own x axis points, along x and z of the board.
+    return atan2(2 * (x * z - w * y), 1 - 2 * (y * y + z * z))
+
+
+def depth_of(pose: Pose) -> float:
+    """Cosine between the block's own y axis and that of the board."""
+    _, x, _, z = pose.orientation
+    return 1 - 2 * (x * x + z * z)
