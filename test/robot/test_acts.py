@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+
 from blocks_planning.board.blocks import Block, Placed, Placement
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import ConfigurationError, InvalidInput

@@ -3,9 +3,10 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 import pytest
-from blocks_planning.robot.coverage import cover, rectangle
 from hypothesis import given
 from hypothesis import strategies as st
+
+from blocks_planning.robot.coverage import cover, rectangle
 
 CELL = 0.04
 
@@ -25,9 +26,7 @@ def test_quarter_turn_swaps_the_sides() -> None:
     assert found == pytest.approx({(0, 0): 1.0, (0, 1): 1.0})
 
 
-@given(
-    st.floats(-5, 5), st.floats(-5, 5), st.floats(0.3, 2), st.floats(0.3, 2), st.floats(-4, 4)
-)
+@given(st.floats(-5, 5), st.floats(-5, 5), st.floats(0.3, 2), st.floats(0.3, 2), st.floats(-4, 4))
 def test_shares_agree_with_points_counted(
     x: float, z: float, a: float, b: float, angle: float
 ) -> None:
