@@ -2,7 +2,8 @@
 # Paths in recipes are relative, so the checkout may lie in a folder with spaces in its name.
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo reproduce test parity faults fuzz cancels lint types bench soak clean
+.PHONY: help setup demo-setup demo reproduce test parity faults fuzz cancels lint types bench
+.PHONY: soak dist clean
 .SUFFIXES:
 
 BIN := .venv/bin
@@ -16,6 +17,7 @@ SEED ?= 0
 
 export XDG_CACHE_HOME := $(CACHE)/xdg
 export PIP_CACHE_DIR := $(CACHE)/pip
+export UV_CACHE_DIR := $(CACHE)/uv
 export MPLCONFIGDIR := $(CACHE)/matplotlib
 export ROS_HOME := $(CACHE)/ros
 export ROS_LOG_DIR := $(CACHE)/ros/log
@@ -38,7 +40,10 @@ help:  ## Show this list
 setup:  ## Make .venv, or bring it up to date (PYTHON=... picks the interpreter)
 	@sh requirements/setup.sh
 
-demo: setup  ## Rebuild three towers through the ROS graph, with a bag and a picture
+demo-setup:
+	@sh requirements/setup.sh demo
+
+demo: demo-setup  ## Rebuild three towers through the ROS graph, with a bag and a picture
 	rm -rf demo
 	$(BIN)/blocks-planning run config/trials/demo.yaml --out demo --bag demo/bag --pace 0.15
 	$(BIN)/blocks-planning verify demo/bag
@@ -76,6 +81,11 @@ bench: setup  ## Measure speed
 
 soak: setup  ## Run 20 000 trials through one graph, and see what grows (ARGS='--trials N')
 	$(BIN)/python -m benchmarks.soak $(ARGS)
+
+dist: setup  ## Build the distributions of the package into dist/, and check them
+	rm -rf dist
+	$(BIN)/python -m build --no-isolation --outdir dist .
+	$(BIN)/twine check --strict dist/*
 
 clean:  ## Remove everything that was made here
 	rm -f .venv/.stamp-*

@@ -13,6 +13,20 @@ NODES = (
     'trial_view',
 )
 
+# What planning and the nodes do without. blocks_planning/extras.py names the extra where a module
+# of it is missing.
+EXTRAS = {
+    'experiments': [
+        'distributed>=2022.12.1',
+        'joblib>=1.3.2',
+        'pandas>=2.1.4',
+        'pyarrow>=14',
+        'scipy>=1.11.4',
+    ],
+    'figures': ['jinja2>=3.1.2', 'matplotlib>=3.6.3', 'pillow>=10.2'],
+    'page': ['aiohttp>=3.9.1'],
+}
+
 
 def version() -> str:
     """Read the version where it is defined, without importing the package."""
@@ -38,12 +52,29 @@ setup(
     name=NAME,
     version=version(),
     description='Block-tower reconstruction with visual scoping: planners, trials and ROS 2 nodes',
+    long_description=Path('README.md').read_text(encoding='utf-8'),
+    long_description_content_type='text/markdown',
     license='Apache-2.0',
+    license_files=['LICENSE'],
     maintainer='blocks_planning maintainers',
     maintainer_email='maintainers@blocks-planning.example',
+    classifiers=[
+        'Intended Audience :: Science/Research',
+        'Operating System :: OS Independent',
+        'Programming Language :: Python :: 3 :: Only',
+        'Topic :: Scientific/Engineering',
+        'Typing :: Typed',
+    ],
     python_requires='>=3.10',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
-    package_data={NAME: ['py.typed', 'analysis/templates/*.html', 'view/web/static/*']},
+    package_data={
+        NAME: [
+            'py.typed',
+            'analysis/paper.yaml',
+            'analysis/templates/*.html',
+            'view/web/static/*',
+        ]
+    },
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),
@@ -55,25 +86,24 @@ setup(
     # named in package.xml only: there is no distribution called rclpy.
     install_requires=[
         'PyYAML>=6.0.1',
-        'aiohttp>=3.9.1',
         'click>=8.1.6',
-        'distributed>=2022.12.1',
-        'jinja2>=3.1.2',
-        'joblib>=1.3.2',
-        'matplotlib>=3.6.3',
         'mcap>=1.6',  # no distribution of Linux has it, nor rosbags
         'numba>=0.58.1',
         'numpy>=1.26.4',
-        'pandas>=2.1.4',
-        'pillow>=10.2',
-        'pyarrow>=14',
+        'portalocker>=2.7',
         'rich>=13.7.1',
         'rosbags>=0.11',
-        'scipy>=1.11.4',
     ],
     extras_require={
-        'robot': ['mujoco>=3.17,<4'],
-        'test': ['hypothesis>=6.98', 'mcap-ros2-support>=0.6', 'playwright>=1.40', 'pytest>=7.4.4']
+        **EXTRAS,
+        'all': sorted(name for names in EXTRAS.values() for name in names),
+        'test': [
+            'hypothesis>=6.98',
+            'mcap-ros2-support>=0.6',
+            'playwright>=1.40',
+            'pytest>=7.4.4',
+        ],
+        'robot': ['mujoco>=3.17,<4'],  # a body in simulation; not in `all`
     },
     entry_points={
         'console_scripts': [

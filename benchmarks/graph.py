@@ -8,6 +8,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -41,8 +42,11 @@ def run(quick: bool) -> Iterator[Figure]:
     """Round trips between two processes, then whole bring-ups."""
     domain = Domain()
     os.environ.update(domain.environment(os.environ))
-    yield from _hops(20 if quick else 100)
-    yield from _bring_up(domain.number, 5 if quick else 125)
+    echo_ms = 0.0
+    for figure in _hops(20 if quick else 100):
+        echo_ms = echo_ms or figure.value
+        yield figure
+    yield from _bring_up(domain.number, 5 if quick else 125, echo_ms)
     domain.release()
 
 
@@ -60,27 +64,29 @@ def _states() -> list[WorldState]:
 
 
 def echo() -> None:
-    """A node of nothing but rclpy, which answers an action with a message made beforehand."""
+    """A node of nothing but rclpy, which answers an action with a message made beforehand.
+
+    It is spun by the default executor of rclpy, whatever spins the nodes of this package.
+    """
+    import rclpy
+    from rclpy.executors import ExternalShutdownException
     from rclpy.node import Node
 
-    from blocks_planning.ros.runtime.process import run as run_node
     from blocks_planning.ros.wire.topics import ACTION, STATE
 
     answers = [STATE.to_ros(BOARD, state) for state in _states()]
+    rclpy.init(args=[])
+    node = Node('world')
+    outlet = node.create_publisher(STATE.ros_type, STATE.name, STATE.publisher_qos)
 
-    def make_node(_: object) -> Node:
-        node = Node('world')
-        outlet = node.create_publisher(STATE.ros_type, STATE.name, STATE.publisher_qos)
+    def answer(message: Any) -> None:
+        said = answers[message.sequence + 1]
+        said.trial_id = message.trial_id
+        outlet.publish(said)
 
-        def answer(message: Any) -> None:
-            said = answers[message.sequence + 1]
-            said.trial_id = message.trial_id
-            outlet.publish(said)
-
-        node.create_subscription(ACTION.ros_type, ACTION.name, answer, ACTION.subscription_qos)
-        return node
-
-    run_node(make_node, args=[])
+    node.create_subscription(ACTION.ros_type, ACTION.name, answer, ACTION.subscription_qos)
+    with suppress(KeyboardInterrupt, ExternalShutdownException):
+        rclpy.spin(node)
 
 
 def _hops(rounds: int) -> Iterator[Figure]:
@@ -135,7 +141,7 @@ def _round_trips(command: list[str], rounds: int) -> list[float]:
             trial_id = f'echo {number}'
             if is_node:
                 heard.clear()
-                trial.publish(TRIAL.to_ros(TrialStarted(trial_id, SPEC)))
+                trial.publish(TRIAL.to_ros(None, TrialStarted(trial_id, SPEC)))
                 wait_for(lambda: heard)
             for message in actions:
                 heard.clear()
@@ -152,7 +158,8 @@ def _round_trips(command: list[str], rounds: int) -> list[float]:
 # Bring-ups
 
 
-def _bring_up(domain: int, seeds: int) -> Iterator[Figure]:
+def _bring_up(domain: int, seeds: int, echo_ms: float) -> Iterator[Figure]:
+    """Whole graphs; ``echo_ms`` is a round trip of the bare echo in the same run [ms]."""
     script = {
         'stimuli': ['cogsci2021'],
         'seeds': seeds,
@@ -178,6 +185,7 @@ def _bring_up(domain: int, seeds: int) -> Iterator[Figure]:
             yield Figure(
                 f'trials per second, scoping, bfs (3), {total} trials', rate, '/s', '> 20'
             )
+            yield Figure('  bare echoes per trial', 1000 / rate / echo_ms, '', '< 80')
             running.wait(DEADLINE_S)
     for name in taken['start']:
         for moment, of_nodes in taken.items():

@@ -7,7 +7,7 @@
     │   ├── StimulusError       a silhouette, or the file it stands in
     │   ├── ConfigurationError  a planner, search or library setting
     │   └── RecordError         a trial record, or the file it stands in
-    └── LimitExceeded           the question is legal but too large for a stated limit: exit code 2
+    └── LimitExceeded           the question is legal but too large for a stated limit: exit code 3
 
 Every message is one sentence on one line that names the value, says where it came from and
 what would be right. Anything else that is raised is a defect.

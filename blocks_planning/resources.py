@@ -8,16 +8,20 @@ from collections.abc import Iterator
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
+_PREFIX_LEVELS = 4
+"""A package lies in ``PREFIX``, ``PREFIX/Lib/site-packages`` or ``PREFIX/lib/pythonX.Y/site-packages``."""
 
 
 def resource_directories(kind: str) -> Iterator[Path]:
     """The existing directories of one kind ('stimuli', 'config'), the most specific first.
 
     A checkout (also one that is installed in editable mode) comes before the prefixes of
-    ``AMENT_PREFIX_PATH`` (a ROS workspace) and that before ``sys.prefix`` (a virtual environment).
+    ``AMENT_PREFIX_PATH`` (a ROS workspace), that before the folder that this package was installed
+    into (also with ``pip install --user`` or ``--target``), and that before ``sys.prefix``.
     """
     prefixes = [
         *filter(None, os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)),
+        *_PACKAGE.parents[:_PREFIX_LEVELS],
         sys.prefix,
     ]
     candidates = [

@@ -1,14 +1,16 @@
 #!/bin/sh
 # Makes .venv in the current folder, or brings it up to date. `make setup` calls it, with a
-# clean environment and all caches inside the folder.
+# clean environment and all caches inside the folder; `make demo` calls it with the word demo, and
+# then leaves out what only experiments, the page and development need.
 #
-# Three stages (packages, messages, project), each with a stamp that holds what the stage was
-# made from. A stamp is written last and removed first, so whatever was interrupted is made again
-# by the next call.
+# Four stages (packages, development, messages, project), each with a stamp that holds what the
+# stage was made from. A stamp is written last and removed first, so whatever was interrupted is
+# made again by the next call.
 # Contents are compared, not dates: a checkout of another branch and back costs nothing.
 set -eu
 
 venv=.venv
+wanted=${1:-all}
 again='then run "make setup" again'
 
 fail() {
@@ -21,6 +23,7 @@ fail() {
 # The folder belongs to it: scripts in .venv/bin hold absolute paths, so a moved or copied
 # checkout needs its own.
 packages_wanted=$(pwd -P; cksum requirements/lock.txt)
+development_wanted=$(cksum requirements/lock-development.txt)
 messages_wanted=$(cd msg_defs && cksum package.xml CMakeLists.txt pyproject.toml ros_wheels.cmake \
     msg/*.msg action/*.action)
 shared=$(ls -d package.xml stimuli config launch 2>/dev/null || true)
@@ -31,9 +34,18 @@ stamped() {
     [ -f "$venv/.stamp-$1" ] && [ "$(cat "$venv/.stamp-$1")" = "$2" ]
 }
 
+development_ready() {
+    [ "$wanted" = demo ] || stamped development "$development_wanted"
+}
+
+# What an older lock has put there is not taken out again: then everything is made anew.
+development_is_old() {
+    [ -f "$venv/.stamp-development" ] && ! development_ready
+}
+
 packages_ready() {
     # The interpreter under a virtual environment may be gone after an upgrade of the system.
-    [ -x "$venv/bin/python" ] && stamped packages "$packages_wanted" \
+    [ -x "$venv/bin/python" ] && stamped packages "$packages_wanted" && ! development_is_old \
         && { [ -z "${PYTHON:-}" ] || stamped python "$PYTHON"; }
 }
 
@@ -42,9 +54,13 @@ messages_ready() {
 }
 
 ready() {
-    messages_ready && stamped project "$project_wanted"
+    messages_ready && stamped project "$project_wanted" && development_ready
 }
 
+case $wanted in
+    all|demo) ;;
+    *) fail "$wanted is not a set of packages: name demo, or all (the default)" ;;
+esac
 if ready; then exit 0; fi
 
 # --- can it work here? Nothing is made before this is known ---------------------------------
@@ -145,9 +161,16 @@ if command -v flock >/dev/null; then
     if ready; then exit 0; fi
 fi
 
-# Settings of pip and CMake, from the environment or a configuration, that are meant for other
+# Settings of pip, uv and CMake, from the environment or a configuration, that are meant for other
 # places.
 unset PIP_TARGET PIP_PREFIX PIP_ROOT PIP_CONSTRAINT PIP_NO_BINARY PIP_ONLY_BINARY
+for name in $(env | sed -n 's/^\(UV_[A-Z_]*\)=.*/\1/p'); do
+    case $name in
+        UV_CACHE_DIR|UV_DEFAULT_INDEX|UV_NATIVE_TLS|UV_SYSTEM_CERTS) ;;
+        *) unset "$name" ;;
+    esac
+done
+export UV_CACHE_DIR="${UV_CACHE_DIR:-$PWD/.cache/uv}"
 unset CMAKE_ARGS CMAKE_GENERATOR CMAKE_TOOLCHAIN_FILE DESTDIR
 export PIP_USER=0 PIP_REQUIRE_VIRTUALENV=0 PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INPUT=1
 export TMPDIR="$PWD/.cache/tmp"
@@ -160,6 +183,36 @@ pip() {
     "$venv/bin/python" -m pip -qq install --no-deps --no-build-isolation "$@"
 }
 
+# uv installs in seconds what pip installs in minutes. It is asked for the same files: it reads no
+# settings of pip, so what pip is told of another index and certificates is handed on.
+get_uv() {
+    [ -x "$venv/bin/uv" ] \
+        || pip --require-hashes --only-binary :all: --requirement requirements/lock-uv.txt || true
+    [ -x "$venv/bin/uv" ] || { echo 'uv could not be had: pip installs, in minutes'; return; }
+    settings=$("$venv/bin/python" -m pip config list 2>/dev/null || true)
+    index=$(printf '%s\n' "$settings" | sed -n "s/^.*\.index.url='\(.*\)'$/\1/p" | tail -n 1)
+    certificates=$(printf '%s\n' "$settings" | sed -n "s/^.*\.cert='\(.*\)'$/\1/p" | tail -n 1)
+    if [ -n "$index" ]; then export UV_DEFAULT_INDEX="${UV_DEFAULT_INDEX:-$index}"; fi
+    if [ -n "$certificates" ]; then export SSL_CERT_FILE="${SSL_CERT_FILE:-$certificates}"; fi
+}
+
+# Install exactly what is in a lock. `uv sync` would take away what the ROS wheels leave behind.
+install_lock() {
+    if [ -x "$venv/bin/uv" ]; then
+        if "$venv/bin/uv" --quiet --no-config --no-python-downloads pip install \
+            --python "$venv/bin/python" --no-deps --no-build-isolation --require-hashes \
+            --requirement "$1"; then return; fi
+        echo 'uv could not install them (see above): pip tries'
+    fi
+    pip --require-hashes --requirement "$1"
+}
+
+# $1 is the lock, $2 what it takes on disk.
+install_set() {
+    echo "Installing $(grep -c == "$1") pinned packages ($2 on disk)"
+    install_lock "$1" || fail "the packages of $1 could not be installed: look at the message above and at the network, $again"
+}
+
 if ! packages_ready; then
     # Known already, unless another call has begun to replace what was ready and did not end.
     [ -n "${python:-}" ] || find_python
@@ -169,11 +222,18 @@ if ! packages_ready; then
     "$python" -m venv "$venv" || fail "$python could not make $venv: see above"
     touch "$venv/COLCON_IGNORE"
     printf '%s\n' "$python" >"$venv/.stamp-python"
-    echo "Installing $(grep -c == requirements/lock.txt) pinned packages (0.8 GB on disk)"
-    { pip --constraint requirements/lock.txt setuptools wheel \
-        && pip --requirement requirements/lock.txt; } \
-        || fail "the packages of requirements/lock.txt could not be installed: look at pip's message above and at the network, $again"
+    get_uv
+    # What builds the one package that comes as a source.
+    awk '/^[^ #]/ { on = /^(setuptools|wheel)==/ } on' requirements/lock.txt >.cache/tmp/first.txt
+    install_lock .cache/tmp/first.txt || fail "setuptools could not be installed: look at the message above and at the network, $again"
+    install_set requirements/lock.txt '0.7 GB'
     printf '%s\n' "$packages_wanted" >"$venv/.stamp-packages"
+fi
+
+if ! development_ready; then
+    [ -n "${python:-}" ] || get_uv
+    install_set requirements/lock-development.txt '0.6 GB'
+    printf '%s\n' "$development_wanted" >"$venv/.stamp-development"
 fi
 
 if ! messages_ready; then

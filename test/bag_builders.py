@@ -22,7 +22,7 @@ from rosbags.highlevel import AnyReader
 
 from blocks_planning.ros.bagging.writer import BagWriter
 from blocks_planning.ros.nodes.bag_recorder import recorded_topic
-from blocks_planning.ros.wire.topics import OUTCOME, TOPICS, TRIAL, Topic
+from blocks_planning.ros.wire.topics import TOPICS, Topic
 from blocks_planning.search.result import CancelToken
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import Message
@@ -51,21 +51,15 @@ def trial_said(spec: TrialSpec) -> tuple[TrialRecord, list[Said]]:
     """The record of a trial, and all that is said on a graph while it runs."""
     heard: list[Message] = []
     record = run_trial(spec, CancelToken(), heard.append)
-    return record, said_of(spec, record, heard)
+    return record, said_of(spec, heard)
 
 
-def said_of(spec: TrialSpec, record: TrialRecord, heard: Iterable[Message]) -> list[Said]:
+def said_of(spec: TrialSpec, heard: Iterable[Message]) -> list[Said]:
     """What is said on a graph, for messages of a trial."""
-
-    def converted(topic: Topic, message: Message) -> Any:
-        if topic is TRIAL:
-            return topic.to_ros(message)
-        if topic is OUTCOME:
-            return topic.to_ros(spec.trial_id, record)
-        return topic.to_ros(spec.task.board, message)
-
     found = ((_TOPIC_OF.get(type(message)), message) for message in heard)
-    return [Said(topic, converted(topic, message)) for topic, message in found if topic]
+    return [
+        Said(topic, topic.to_ros(spec.task.board, message)) for topic, message in found if topic
+    ]
 
 
 def open_bag(path: Path, **options: Any) -> BagWriter:

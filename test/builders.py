@@ -7,16 +7,18 @@ import json
 from itertools import product
 from typing import Any
 
-from blocks_planning.board.blocks import PAPER_LIBRARY, format_library, parse_library
+from blocks_planning.board.blocks import PAPER_LIBRARY, Placed, format_library, parse_library
 from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.board.task import Task
 from blocks_planning.search.result import DEFAULT_BUDGET, CancelToken
 from blocks_planning.search.searches import make_search
+from blocks_planning.subgoals.regions import Region, rows_label
 from blocks_planning.subgoals.registry import make_strategy
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import Message
+from blocks_planning.trials.messages import Message, TrialEnded
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.worlds.observation import Observation, Observations
 
 # Towers for the paper's library, top row first.
 SQUARE = '####/####/####/####'
@@ -50,6 +52,17 @@ _SEARCHES: list[Settings] = [
 ]
 PLANNERS = [{**strategy, **search} for strategy, search in product(_STRATEGIES, _SEARCHES)]
 """Settings for :func:`spec`: every strategy with every search."""
+
+
+def row_regions(*heights: int) -> tuple[Region, ...]:
+    """Regions that are rows, without their cells."""
+    return tuple(Region(rows_label(height), 0) for height in heights)
+
+
+def as_ordered(*placements: Placed) -> Observations:
+    """The observations of a trial in which these placements were ordered and carried out."""
+    made = (Observation(placed.placement, (placed,)) for placed in placements)
+    return (Observation(), *made)
 
 
 def planner_id(settings: dict[str, Any]) -> str:
@@ -112,19 +125,55 @@ def remade(data: dict[str, Any]) -> dict[str, Any]:
     begun = [
         part for entry in data['decisions'] for part in entry['subgoals'][: entry['executed']]
     ]
-    data['blocks'] = len(data['placements'])
+    standing: list[Any] = []
+    for seen in data['observations']:
+        standing = [block for block in standing if block not in seen['gone']] + seen['landed']
+    data['placements'] = standing
+    data['blocks'] = len(standing)
+    data['orders'] = sum(seen['ordered'] is not None for seen in data['observations'])
+    data['surprises'] = sum(
+        seen['ordered'] is None
+        or bool(seen['gone'])
+        or [[*block[:3]] for block in seen['landed']] != [seen['ordered']]
+        for seen in data['observations'][1:]
+    )
+    data |= _measures(data)
     data['subgoals'] = sum(entry['executed'] for entry in data['decisions'])
     data['action_planning_cost'] = sum(part['planning_cost'] for part in begun)
     data['solution_cost'] = sum(part['solution_cost'] for part in begun)
     data['subgoal_planning_cost'] = sum(
         entry['subgoal_planning_cost'] for entry in data['decisions']
     )
-    own = [key for key in ('participant', 'costs') if key in data]
-    known_before = json.dumps(
-        {key: data[key] for key in [*spec().to_json(), *own]}, sort_keys=True
-    )
+    known_before = json.dumps({key: data[key] for key in spec().to_json()}, sort_keys=True)
     data['trial_id'] = hashlib.blake2b(known_before.encode(), digest_size=8).hexdigest()
     return data
+
+
+def _measures(data: dict[str, Any]) -> dict[str, float]:
+    rows = data['silhouette'][::-1]
+    target = {(c, r) for r, row in enumerate(rows) for c, sign in enumerate(row) if sign == '#'}
+    filled = {
+        (c, r)
+        for width, height, column, row in data['placements']
+        for c in range(column, column + width)
+        for r in range(row, row + height)
+    }
+    both = len(target & filled)
+
+    def ratio(part: int, whole: int) -> float:
+        return part / whole if whole else 1.0
+
+    return {
+        'recall': ratio(both, len(target)),
+        'precision': ratio(both, len(filled)),
+        'f1': ratio(2 * both, len(filled) + len(target)),
+        'iou': ratio(both, len(filled | target)),
+    }
+
+
+def ended(trial_id: str, record: TrialRecord) -> TrialEnded:
+    """The end of a trial, as the scribe says it."""
+    return TrialEnded(trial_id, record.status, record.reason, record)
 
 
 def cancelled_record(trial: TrialSpec, messages: int) -> TrialRecord:

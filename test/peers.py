@@ -33,7 +33,7 @@ from blocks_planning.ros.wire.topics import TOPICS, TRIAL, Topic  # noqa: E402
 from blocks_planning.trials.messages import Message  # noqa: E402
 from blocks_planning.trials.spec import TrialSpec  # noqa: E402
 
-DEADLINE_S = 20.0
+DEADLINE_S = 60.0
 _SPIN_S = 0.002
 _TOPIC_OF = {topic.kind: topic for topic in TOPICS}
 
@@ -151,12 +151,10 @@ class Peer(Node):
     def say(self, message: Message) -> None:
         """Say something that a part would say."""
         topic = _TOPIC_OF[type(message)]
-        place = () if topic is TRIAL else (self._board,)
-        self.outlets[topic].publish(topic.to_ros(*place, message))
+        self.outlets[topic].publish(topic.to_ros(self._board, message))
 
     def _hear(self, topic: Topic, message: Any) -> None:
-        place = (self._board,) if topic.needs_board else ()
-        self.heard.append(topic.from_ros(*place, message))
+        self.heard.append(topic.from_ros(self._board, message))
 
     def only(self, *kinds: type[Any]) -> list[Any]:
         """What was heard of some kinds."""

@@ -10,12 +10,12 @@ from blocks_planning.errors import InvalidInput
 from blocks_planning.search.result import Problem
 from blocks_planning.search.solve import solve
 from blocks_planning.trials import scribe, searcher, selector, world
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
     SearchAnswer,
     Solve,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,

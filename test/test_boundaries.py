@@ -2,8 +2,9 @@
 
 ::
 
-    cli  ->  ros  ->  view | experiments | analysis | robot  ->  trials  ->  subgoals  ->  search
-         ->  board  ->  families  ->  located | resources | settings  ->  errors
+    cli  ->  ros  ->  view | experiments | analysis | robot  ->  fitting  ->  people | towers
+         ->  trials  ->  worlds  ->  subgoals  ->  search  ->  board  ->  families
+         ->  extras | located | resources | settings  ->  errors
 """
 
 from __future__ import annotations
@@ -15,12 +16,15 @@ from source_imports import PACKAGE, Source, imports, package_sources
 
 LAYERS = [
     {'errors'},
-    {'located', 'resources', 'settings'},
+    {'extras', 'located', 'resources', 'settings'},
     {'families'},
     {'board'},
     {'search'},
     {'subgoals'},
+    {'worlds'},
     {'trials'},
+    {'people', 'towers'},
+    {'fitting'},
     {'view', 'experiments', 'analysis', 'robot'},
     {'ros'},
     {'cli'},

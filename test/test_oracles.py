@@ -345,6 +345,17 @@ def test_bfs_prefers_fewer_cells_to_a_dead_end_with_more() -> None:
         assert choice.cost == 5
 
 
+def test_bfs_prefers_more_cells_if_it_ignores_dead_ends() -> None:
+    # Lying three fills more than lying two, and leaves room for neither.
+    library = ((3, 1), (2, 1))
+    for key in range(20):
+        task = full_task(4, 1, library)
+        choice = bfs_choice(task, EMPTY, Generator(key), depth=1, dead_ends='ignored')
+        assert choice.placements[0].width == 3
+    with pytest.raises(ValueError, match="dead_ends must be 'worst' or 'ignored', got 'best'"):
+        bfs_choice(full_task(4, 1, library), EMPTY, Generator(0), depth=1, dead_ends='best')
+
+
 def test_bfs_prefers_inner_nodes_to_leaves_that_are_dead_ends() -> None:
     # Five cells, blocks of two: columns 0, 1, 2, 3, each with a child; then 0-2, 0-3, 1-3, 2-0,
     # 3-0, 3-1, all of them dead ends. The best nodes are the four inner ones.

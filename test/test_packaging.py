@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import re
-import runpy
 import shutil
 import subprocess
 import sys
@@ -13,33 +12,12 @@ from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 import pytest
-import setuptools
 import yaml
+from declared import LOCKS, NAMES, canonical, pins, setup_arguments
 from source_imports import PACKAGE, ROOT, imports, package_sources
 
 import blocks_planning
 
-# Module: distribution on the package index, key of rosdep. A module of ROS is named like its
-# ROS package, and its wheel like that with ros- before it. rosdep has no key for some.
-NAMES: dict[str, tuple[str, str | None]] = {
-    'PIL': ('pillow', 'python3-pil'),
-    'aiohttp': ('aiohttp', 'python3-aiohttp'),
-    'click': ('click', 'python3-click'),
-    'dask': ('distributed', None),
-    'jinja2': ('jinja2', 'python3-jinja2'),
-    'joblib': ('joblib', 'python3-joblib'),
-    'matplotlib': ('matplotlib', 'python3-matplotlib'),
-    # rosdep knows it only as a dependency of another.
-    'mcap': ('mcap', 'mcap-ros2-support'),
-    'numba': ('numba', 'python3-numba'),
-    'numpy': ('numpy', 'python3-numpy'),
-    'pandas': ('pandas', 'python3-pandas'),
-    'pyarrow': ('pyarrow', None),
-    'rich': ('rich', 'python3-rich'),
-    'rosbags': ('rosbags', 'python3-rosbags-pip'),
-    'scipy': ('scipy', 'python3-scipy'),
-    'yaml': ('pyyaml', 'python3-yaml'),
-}
 BUILT_HERE = {'blocks_planning_msgs'}
 
 MANIFEST = ElementTree.parse(ROOT / 'package.xml').getroot()
@@ -50,34 +28,12 @@ INTERFACES = sorted(
     for path in MESSAGES.rglob('*')
     if path.suffix in {'.msg', '.srv', '.action'}
 )
-LISTS = sorted((ROOT / 'requirements').glob('*.in'))
 SHARED = sorted(
     path.relative_to(ROOT)
     for folder in ('stimuli', 'config', 'launch')
     for path in (ROOT / folder).rglob('*')
     if path.is_file() and '__pycache__' not in path.parts
 )
-
-
-def canonical(requirement: str) -> str:
-    """Return the name in a requirement, in the one spelling that an index compares."""
-    found = re.match(r'[A-Za-z0-9._-]+', requirement)
-    assert found, requirement
-    return re.sub(r'[-_.]+', '-', found.group()).lower()
-
-
-def pins(path: Path) -> dict[str, set[str]]:
-    """Read the exact versions in a list of requirements; there may be several by marker."""
-    found: dict[str, set[str]] = {}
-    for line in path.read_text(encoding='utf-8').splitlines():
-        requirement = line.partition('#')[0].strip()
-        if requirement:
-            name, _, version = requirement.partition(';')[0].partition('==')
-            found.setdefault(canonical(name), set()).add(version.strip())
-    return found
-
-
-LOCK = pins(ROOT / 'requirements' / 'lock.txt')
 
 
 def declared_in_manifest(kind: str) -> set[str]:
@@ -92,12 +48,7 @@ def third_party() -> list[str]:
 @pytest.fixture(scope='module')
 def arguments() -> dict[str, Any]:
     """What setup.py says to setuptools."""
-    said: dict[str, Any] = {}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(setuptools, 'setup', said.update)
-        patch.chdir(ROOT)
-        runpy.run_path('setup.py')
-    return said
+    return setup_arguments()
 
 
 @pytest.fixture(scope='module')
@@ -105,7 +56,7 @@ def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the package, installed the way colcon installs an ament_python package."""
     folder = tmp_path_factory.mktemp('packaging')
     copy = folder / 'source'
-    for name in ('setup.py', 'setup.cfg', 'package.xml'):
+    for name in ('setup.py', 'setup.cfg', 'package.xml', 'README.md', 'LICENSE'):
         copy.mkdir(exist_ok=True)
         shutil.copy(ROOT / name, copy / name)
     for name in ('blocks_planning', 'resource', 'stimuli', 'config', 'launch'):
@@ -158,38 +109,23 @@ def test_imported_module_is_declared_and_pinned(arguments: dict[str, Any], modul
     if key is not None:
         assert key in declared_in_manifest('exec_depend') | declared_in_manifest('depend')
     if module in NAMES:
-        assert distribution in map(canonical, arguments['install_requires'])
+        extras = arguments['extras_require']
+        assert distribution in map(canonical, [*arguments['install_requires'], *extras['all']])
     if module not in BUILT_HERE:
-        assert distribution in LOCK
+        assert distribution in pins(*LOCKS)
 
 
 def test_installed_requirements_are_in_the_manifest(arguments: dict[str, Any]) -> None:
     keys = dict(NAMES.values())
-    declared = {keys[canonical(text)] for text in arguments['install_requires']}
+    wanted = [*arguments['install_requires'], *arguments['extras_require']['all']]
+    declared = {keys[canonical(text)] for text in wanted}
     assert declared - {None} <= declared_in_manifest('exec_depend')
-
-
-@pytest.mark.parametrize('path', LISTS, ids=lambda path: path.name)
-def test_lock_holds_what_is_listed(path: Path) -> None:
-    listed = pins(path)
-    assert listed
-    assert {name: LOCK.get(name) for name in listed} == listed
-
-
-def test_lock_is_exact() -> None:
-    exact = re.compile(r'[a-z0-9-]+==[0-9][\w.+!]*(; python_version [^;#]+)?')
-    lines = (ROOT / 'requirements' / 'lock.txt').read_text(encoding='utf-8').splitlines()
-    assert [line for line in lines if not line.startswith('#') and not exact.fullmatch(line)] == []
-
-
-def test_messages_are_built_with_what_is_locked() -> None:
-    # No tomllib before Python 3.11.
-    text = (MESSAGES / 'pyproject.toml').read_text(encoding='utf-8')
-    pinned = re.findall(r"'([\w-]+)(?:\[\w+\])?==([\w.]+)'", text)
-    assert {name: LOCK.get(name) for name, _ in pinned} == {name: {pin} for name, pin in pinned}
-    # pip alone finds these on the machine, or adds them by itself.
-    listed = set(pins(ROOT / 'requirements' / 'build.in')) - {'cmake', 'ninja'}
-    assert listed <= dict(pinned).keys()
+    # What rosdep can't install is named in a comment.
+    manifest = (ROOT / 'package.xml').read_text(encoding='utf-8')
+    comments = ' '.join(re.findall(r'<!--(.*?)-->', manifest, re.DOTALL))
+    unknown = {canonical(text) for text in wanted if keys[canonical(text)] is None}
+    assert unknown
+    assert {name for name in unknown if name not in comments} == set()
 
 
 class Line(NamedTuple):

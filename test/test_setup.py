@@ -24,14 +24,31 @@ GOOD = {
     'c++': 'exit 0',
 }
 # A Python whose virtual environments hold itself. Its pip writes down the last of its arguments:
-# what it was to install.
+# what it was to install. What it installs of the lock of uv is $FAKE_UV, if there is such a file.
 FAKE_PYTHON = """\
 for last do :; done
-case "$1 $2" in
-    '-m venv') mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
-    '-m pip') echo "$last" >>installed; [ "$last" != "$FAILING" ] ;;
+case "$1 $2 $3" in
+    '-m venv '*) mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
+    '-m pip config') echo "$PIP_SETTINGS" ;;
+    '-m pip '*)
+        echo "$last" >>installed
+        [ "$last" != "$FAILING" ] || exit 1
+        case $last in *lock-uv.txt) cp "$FAKE_UV" .venv/bin/uv ;; esac ;;
 esac
 """
+# A uv that writes down the same, and what of its settings it was given.
+FAKE_UV = """\
+#!/bin/sh
+for last do :; done
+echo "uv $last" >>installed
+env | grep '^UV_\\|^SSL_CERT_FILE' | sort >settings
+[ "$last" != "$FAILING_UV" ]
+"""
+UV = 'requirements/lock-uv.txt'
+FIRST = '.cache/tmp/first.txt'
+LOCK = 'requirements/lock.txt'
+DEVELOPMENT = 'requirements/lock-development.txt'
+BUILT = ['./msg_defs', '.']
 
 
 @pytest.fixture
@@ -47,7 +64,7 @@ def checkout(tmp_path: Path) -> Path:
 
 
 def set_up(
-    checkout: Path, commands: dict[str, str], settings: dict[str, str]
+    checkout: Path, commands: dict[str, str], settings: dict[str, str], *words: str
 ) -> subprocess.CompletedProcess[str]:
     """Run the set-up where `commands` are as given, and otherwise those of a good machine."""
     folder = checkout.parent / 'bin'
@@ -59,7 +76,7 @@ def set_up(
         name: value for name, value in os.environ.items() if name not in {'CC', 'CXX', 'PYTHON'}
     }
     environment |= {'PATH': f'{folder}:{os.environ["PATH"]}', **settings}
-    command = ['sh', 'requirements/setup.sh']
+    command = ['sh', 'requirements/setup.sh', *words]
     return subprocess.run(command, cwd=checkout, env=environment, capture_output=True, text=True)
 
 
@@ -136,20 +153,84 @@ def test_missing_is_named_and_nothing_is_made(
     assert sorted(checkout.rglob('*')) == before
 
 
-def installed(checkout: Path, failing: str = '') -> list[str]:
-    """What a run of the set-up installs with pip, in this order; `failing` can't be installed."""
+def installed(
+    checkout: Path, *words: str, failing: str = '', has_uv: bool = True, **settings: str
+) -> list[str]:
+    """What a run of the set-up installs, in this order; `failing` can't be installed by pip."""
     (checkout / 'installed').unlink(missing_ok=True)
-    settings = {'PYTHON': str(checkout.parent / 'bin' / 'fake'), 'FAILING': failing}
-    done = set_up(checkout, {'fake': FAKE_PYTHON}, settings)
+    fake_uv = checkout.parent / 'uv'
+    fake_uv.write_text(FAKE_UV)
+    fake_uv.chmod(0o755)
+    settings |= {
+        'PYTHON': str(checkout.parent / 'bin' / 'fake'),
+        'FAILING': failing,
+        'FAKE_UV': str(fake_uv) if has_uv else '/dev/null/none',
+    }
+    done = set_up(checkout, {'fake': FAKE_PYTHON}, settings, *words)
     assert done.returncode == (1 if failing else 0), done.stderr
-    assert done.stderr.startswith('error: ') or not failing
+    if failing:
+        assert 'error: ' in done.stderr
     log = checkout / 'installed'
     return log.read_text().splitlines() if log.exists() else []
 
 
 def test_a_second_call_installs_nothing(checkout: Path) -> None:
-    assert installed(checkout) == ['wheel', 'requirements/lock.txt', './msg_defs', '.']
+    with_uv = [f'uv {path}' for path in (FIRST, LOCK, DEVELOPMENT)]
+    assert installed(checkout) == [UV, *with_uv, *BUILT]
     assert installed(checkout) == []
+
+
+def test_pip_installs_the_same_where_uv_cannot_be_had(checkout: Path) -> None:
+    wanted = [UV, FIRST, LOCK, DEVELOPMENT, *BUILT]
+    assert installed(checkout, has_uv=False) == wanted
+    assert installed(checkout, has_uv=False) == []
+
+
+def test_pip_installs_what_uv_could_not(checkout: Path) -> None:
+    done = installed(checkout, FAILING_UV=LOCK)
+    assert done[done.index(f'uv {LOCK}') + 1] == LOCK
+    assert done[-1] == '.'
+    assert installed(checkout) == []
+
+
+def test_what_builds_the_rest_comes_first(checkout: Path) -> None:
+    installed(checkout)
+    first = (checkout / FIRST).read_text()
+    names = [line.partition('==')[0] for line in first.splitlines() if not line.startswith(' ')]
+    assert names == ['setuptools', 'wheel']
+    lock = (checkout / LOCK).read_text()
+    assert all(line in lock for line in first.splitlines())
+    assert first.count('--hash=') >= 2
+
+
+def test_the_demo_needs_less_and_the_rest_is_added(checkout: Path) -> None:
+    assert installed(checkout, 'demo') == [UV, f'uv {FIRST}', f'uv {LOCK}', *BUILT]
+    assert installed(checkout, 'demo') == []
+    assert installed(checkout) == [f'uv {DEVELOPMENT}']
+    assert installed(checkout) == []
+    assert installed(checkout, 'demo') == []
+
+
+def test_uv_is_told_what_pip_was_told_and_nothing_else(
+    checkout: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = 'https://packages.example/simple'
+    said = f"global.index{'-'}url='{place}'\n:env:.cert='/etc/own.pem'"
+    for name in ('SSL_CERT_FILE', 'UV_CACHE_DIR', 'UV_DEFAULT_INDEX'):
+        monkeypatch.delenv(name, raising=False)
+    installed(checkout, PIP_SETTINGS=said, UV_TARGET='elsewhere', UV_FIND_LINKS='elsewhere')
+    assert (checkout / 'settings').read_text().splitlines() == [
+        'SSL_CERT_FILE=/etc/own.pem',
+        f'UV_CACHE_DIR={checkout}/.cache/uv',
+        f'UV_DEFAULT_INDEX={place}',
+    ]
+
+
+def test_a_set_that_is_none_is_refused(checkout: Path) -> None:
+    done = set_up(checkout, {}, {}, 'test')
+    assert done.returncode == 1
+    assert done.stderr == 'error: test is not a set of packages: name demo, or all (the default)\n'
+    assert not (checkout / '.venv').exists()
 
 
 @pytest.mark.parametrize('path', MESSAGES, ids=str)
@@ -170,16 +251,26 @@ def test_messages_are_built_when_one_is_new_or_gone(checkout: Path) -> None:
     assert installed(checkout) == ['./msg_defs']
 
 
-def test_a_new_lock_installs_everything(checkout: Path) -> None:
+@pytest.mark.parametrize('lock', [LOCK, DEVELOPMENT])
+def test_a_new_lock_installs_everything(checkout: Path, lock: str) -> None:
     first = installed(checkout)
-    with (checkout / 'requirements' / 'lock.txt').open('a') as file:
+    with (checkout / lock).open('a') as file:
         file.write('# changed\n')
     assert installed(checkout) == first
 
 
-@pytest.mark.parametrize('failing', ['requirements/lock.txt', './msg_defs', '.'])
+def test_the_demo_does_not_care_for_the_lock_of_the_rest(checkout: Path) -> None:
+    installed(checkout)
+    with (checkout / DEVELOPMENT).open('a') as file:
+        file.write('# changed\n')
+    assert installed(checkout, 'demo') == []
+
+
+@pytest.mark.parametrize('failing', [FIRST, LOCK, DEVELOPMENT, *BUILT])
 def test_what_failed_is_made_again(checkout: Path, failing: str) -> None:
-    everything = installed(checkout, failing) + installed(checkout)
+    attempts = [installed(checkout, failing=failing, has_uv=False)]
+    attempts.append(installed(checkout, has_uv=False))
+    everything = [name for attempt in attempts for name in attempt]
     assert everything.count(failing) == 2
     assert everything[-1] == '.'
     assert installed(checkout) == []

@@ -20,16 +20,20 @@ Groups = Sequence[np.ndarray]
 
 
 class Estimate(NamedTuple):
-    """A value with its interval; all nan if nothing could be estimated."""
+    """A value with its interval; all nan if nothing could be estimated.
+
+    ``p`` is that of an effect, as the paper computes it (see :func:`paper_p`); nan for a level.
+    """
 
     mean: float
     low: float
     high: float
+    p: float = float('nan')
 
     def to_json(self) -> dict[str, Any]:
-        """``{"mean": ..., "ci": [low, high]}``, with null for nan."""
-        mean, low, high = (None if np.isnan(value) else float(value) for value in self)
-        return {'mean': mean, 'ci': [low, high]}
+        """``{"mean": ..., "ci": [low, high], "p": ...}``, with null for nan."""
+        mean, low, high, p = (None if np.isnan(value) else float(value) for value in self)
+        return {'mean': mean, 'ci': [low, high], 'p': p}
 
 
 NOTHING = Estimate(float('nan'), float('nan'), float('nan'))
@@ -46,6 +50,16 @@ def draw(groups: Groups, rng: np.random.Generator, iterations: int = ITERATIONS)
     return drawn
 
 
+def paper_p(distribution: np.ndarray, mean: float) -> float:
+    """p of an effect as the published analysis computes it.
+
+    For a positive effect the share of iterations below 0, for any other the share of those that are
+    not, divided by two in both cases. The two-sided p is four times this.
+    """
+    below = float((distribution < 0).mean())
+    return (below if mean > 0 else 1 - below) / 2
+
+
 def bootstrap_mean(
     groups: Groups, rng: np.random.Generator, iterations: int = ITERATIONS
 ) -> Estimate:
@@ -54,7 +68,7 @@ def bootstrap_mean(
     if not groups:
         return NOTHING
     mean = float(np.mean([group.mean() for group in groups]))
-    return _estimate(mean, draw(groups, rng, iterations).mean(axis=1))
+    return estimate_of(draw(groups, rng, iterations).mean(axis=1), mean)
 
 
 def bootstrap_difference(
@@ -71,7 +85,7 @@ def bootstrap_difference(
     left, right = ([pair[side] for pair in pairs] for side in (0, 1))
     mean = float(np.mean([a.mean() - b.mean() for a, b in pairs]))
     drawn = draw(left, rng, iterations) - draw(right, rng, iterations)
-    return _estimate(mean, drawn.mean(axis=1))
+    return effect_of(drawn.mean(axis=1), mean)
 
 
 def bootstrap_correlation(
@@ -88,13 +102,14 @@ def bootstrap_correlation(
         rng: generator of the draws.
         iterations: number of draws.
 
-    The estimate is the mean of r over the iterations. It is nan where a level has no value, or
-    nothing varies.
+    The estimate is the mean of r over the iterations, without those in which nothing varies, as in
+    the published analysis. It is nan where a level has no value, or nothing ever varies.
     """
     drawn = [draw(at_level, rng, iterations) for at_level in groups]
-    means = np.stack([_mean_of_present(values) for values in drawn], axis=1)
+    means = np.stack([mean_of_present(values) for values in drawn], axis=1)
     r = pearson(levels, means)
-    return _estimate(float(r.mean()), r) if np.isfinite(r).all() else NOTHING
+    r = r[np.isfinite(r)]
+    return effect_of(r, float(r.mean())) if len(r) else NOTHING
 
 
 def pearson(x: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -106,15 +121,21 @@ def pearson(x: np.ndarray, rows: np.ndarray) -> np.ndarray:
     return r
 
 
-def _mean_of_present(values: np.ndarray) -> np.ndarray:
-    """Means of the rows without nan; nan for rows that have nothing else."""
+def mean_of_present(values: np.ndarray) -> np.ndarray:
+    """Means over the last axis of what is not nan; nan where there is nothing else."""
     present = ~np.isnan(values)
     with np.errstate(invalid='ignore'):
-        means: np.ndarray = np.where(present, values, 0.0).sum(axis=1) / present.sum(axis=1)
+        means: np.ndarray = np.where(present, values, 0.0).sum(axis=-1) / present.sum(axis=-1)
     return means
 
 
-def _estimate(mean: float, distribution: np.ndarray) -> Estimate:
+def estimate_of(distribution: np.ndarray, mean: float) -> Estimate:
+    """A level with the percentiles of its bootstrap distribution, float64 (iterations,)."""
     tail = 100 * (1 - LEVEL) / 2
     low, high = np.percentile(distribution, [tail, 100 - tail])
     return Estimate(mean, float(low), float(high))
+
+
+def effect_of(distribution: np.ndarray, mean: float) -> Estimate:
+    """An effect with the percentiles of its bootstrap distribution, and its p."""
+    return estimate_of(distribution, mean)._replace(p=paper_p(distribution, mean))

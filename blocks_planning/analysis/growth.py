@@ -6,11 +6,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
 from blocks_planning.analysis.style import COLOURS, new_figure, styled
 from blocks_planning.analysis.trials import read_trials
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
+with extra('figures'):
+    from matplotlib.figure import Figure
 
 WAYS = {
     'height': 'height [cells], at width 8',
@@ -18,6 +22,8 @@ WAYS = {
     'side': 'height = width [cells]',
 }
 _BASE = 8
+LEAST_SIDES = 3
+"""Fewest different sides to which a law is fitted."""
 
 
 class Fit(NamedTuple):
@@ -46,15 +52,21 @@ class Fit(NamedTuple):
         return f'side^{self.base:.1f}'
 
 
-def fit(side: np.ndarray, cost: np.ndarray) -> Fit:
+def fit(side: np.ndarray, cost: np.ndarray) -> Fit | None:
     """The better of both laws, by least squares on log cost; costs of 0 are left out.
 
     Args:
         side: float64 (n,) [cells].
         cost: float64 (n,) [states].
+
+    Returns:
+        None if fewer than ``LEAST_SIDES`` different sides have a cost: both laws have two
+        constants, so that any two points lie on either.
     """
     present = cost > 0
     side, cost = side[present].astype(float), np.log(cost[present])
+    if len(np.unique(side)) < LEAST_SIDES:
+        return None
     fits = []
     for law, x in (('exponential', side), ('power', np.log(side))):
         slope, level = np.polyfit(x, cost, 1)
@@ -107,7 +119,7 @@ def growth_table(trials: pd.DataFrame) -> list[dict[str, Any]]:
                     'sides': means.index.tolist(),
                     'states': means['states'].tolist(),
                     'success': means['success'].tolist(),
-                    'fit': found._asdict(),
+                    'fit': None if found is None else found._asdict(),
                 }
             )
     return rows
@@ -147,8 +159,11 @@ def growth_figure(rows: list[dict[str, Any]], budget: int) -> Figure:
 
 def _draw(above: Any, below: Any, row: dict[str, Any]) -> None:
     sides, strategy = np.array(row['sides'], float), row['strategy']
-    found, colour = Fit(**row['fit']), COLOURS[strategy]
-    above.plot(sides, row['states'], 'o', color=colour, label=f'{strategy}: {found}')
-    line = np.linspace(sides.min(), sides.max(), 50)
-    above.plot(line, found.at(line), color=colour, lw=1)
+    found = None if row['fit'] is None else Fit(**row['fit'])
+    colour = COLOURS[strategy]
+    label = f'{strategy}: {found or "too few sizes for a law"}'
+    above.plot(sides, row['states'], 'o', color=colour, label=label)
+    if found is not None:
+        line = np.linspace(sides.min(), sides.max(), 50)
+        above.plot(line, found.at(line), color=colour, lw=1)
     below.plot(sides, row['success'], 'o-', color=colour, ms=3, lw=1)

@@ -10,13 +10,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
-from scipy.stats import rankdata
 
 from blocks_planning.analysis.bootstrap import ITERATIONS, NOTHING, Estimate, pearson
 from blocks_planning.analysis.trials import planners_of
 from blocks_planning.errors import InvalidInput
+from blocks_planning.extras import extra
 from blocks_planning.resources import resource_directories
+
+with extra('experiments'):
+    import pandas as pd
+    from scipy.stats import rankdata
 
 SET = 'cogsci2021'
 SEED = 20200729

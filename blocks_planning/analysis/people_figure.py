@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from matplotlib.figure import Figure
-
 from blocks_planning.analysis.style import COLOURS, SEARCH_NAMES, error_bars, new_figure, styled
+from blocks_planning.extras import extra
+
+with extra('figures'):
+    from matplotlib.figure import Figure
 
 _MARKS = {
     'bfs.none': ('s', COLOURS['none'], 'BFS, none'),

@@ -1,14 +1,13 @@
-"""Figures 2, 3 and 4 of the paper, from results and tables."""
+"""Figures 2 and 4 in the paper's own forms, from results."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
-from blocks_planning.analysis.paper import claims
+from blocks_planning.analysis.marks import legend_handles, mark_of, style_of
+from blocks_planning.analysis.paper import Kind
 from blocks_planning.analysis.results import STRATEGIES
 from blocks_planning.analysis.style import (
     BLACK,
@@ -19,134 +18,124 @@ from blocks_planning.analysis.style import (
     new_figure,
     styled,
 )
-from blocks_planning.analysis.trials import planners_of
+from blocks_planning.extras import extra
 
-_PAPER = {claim.path: claim.value for claim in claims() if claim.path[0] == 'planners'}
-_WIDTH = 0.26
+with extra('figures'):
+    from matplotlib.figure import Figure
 
 Results = dict[str, Any]
 
+_SHAPES = {'bfs': 'o', 'astar': 's'}
+_COSTS = ('action_planning_cost', 'subgoal_planning_cost')
+_UNITS = {
+    'action_planning_cost': (1e3, '1000 states'),
+    'subgoal_planning_cost': (1e6, 'million states'),
+}
+
+_LOWEST = {'action_planning_cost': -4, 'subgoal_planning_cost': -1}
+"""Lower ends of the axes, in their units: dots at 0 and what is written below them are whole."""
+
 
 def figure_2(presets: dict[str, Results]) -> Figure:
-    """Success (A), action planning cost (B) and subgoal planning cost (B) of every planner."""
-    figure = new_figure(9.5, 3.6)
+    """Cost against success, one dot a planner: action (A) and subgoal planning cost (B)."""
+    figure = new_figure(9.5, 3.6 * len(presets))
     with styled():
-        axes = figure.subplots(1, 3)
-        groups = _searches(presets)
-        measures = ('success', 'action_planning_cost', 'subgoal_planning_cost')
-        for panel, (ax, measure) in enumerate(zip(axes, measures, strict=True)):
-            for place, (search, results) in enumerate(groups.values()):
-                for offset, strategy in enumerate(STRATEGIES):
-                    x = place + (offset - 1) * _WIDTH
-                    _bar(ax, x, measure, strategy, search, results)
-            ax.set_xticks(range(len(groups)), list(groups))
-            ax.set_ylabel(MEASURE_LABELS[measure])
-            ax.set_xlim(-0.5, len(groups) - 0.5)
-            ax.set_title(('A', 'B, action level', 'B, subgoal level')[panel])
-            if measure == 'success':
-                ax.set_ylim(0, 1.05)
-            else:
-                ax.set_yscale('log')
-                ax.set_ylim(50 if panel == 1 else 1e5, 2e5 if panel == 1 else 4e7)
-        handles = [
-            axes[0].bar([0], [0], color=COLOURS[strategy], label=strategy)
-            for strategy in STRATEGIES
-        ]
-        [diamond] = axes[0].plot([], [], 'D', mfc='white', mec=BLACK, ms=5, label='paper')
-        figure.legend(handles=[*handles, diamond], loc='outside lower center', ncols=4)
+        axes = figure.subplots(len(presets), 2, squeeze=False)
+        for row, (preset, results) in zip(axes, presets.items(), strict=True):
+            for letter, ax, cost in zip('AB', row, _COSTS, strict=True):
+                for search in SEARCH_NAMES:
+                    _dots(ax, results['planners'][search], search, cost)
+                _, unit = _UNITS[cost]
+                ax.set_ylabel(f'{MEASURE_LABELS[cost].splitlines()[0]}\n[{unit}]')
+                ax.set_xlabel('perfect reconstruction [share of runs]')
+                ax.set_xlim(0, 1.06)
+                ax.set_ylim(bottom=_LOWEST[cost])
+                ax.set_title(f'{letter}  {preset}')
+        figure.legend(handles=_legend(axes[0][0]), loc='outside lower center', ncols=4)
     return figure
 
 
-def _bar(ax: Any, x: float, measure: str, strategy: str, search: str, results: Results) -> None:
-    estimate = results['planners'][search][strategy][measure]
-    if measure == 'subgoal_planning_cost' and strategy == 'none':
-        ax.annotate(
-            '0',
-            (x, 0.015),
-            xycoords=('data', 'axes fraction'),
-            ha='center',
-            color=COLOURS['none'],
-        )
+def _dots(ax: Any, planners: dict[str, Any], search: str, cost: str) -> None:
+    """The planners of a search, joined by a line, and the paper's beside them."""
+    scale, _ = _UNITS[cost]
+    places = []
+    for strategy in STRATEGIES:
+        success, states = planners[strategy]['success'], planners[strategy][cost]
+        if states['mean'] is None:
+            continue
+        x, x_error = error_bars(success)
+        y, y_error = error_bars(states)
+        y, bars = y / scale, [[side[0] / scale] for side in y_error]
+        places.append((x, y))
+        colour = COLOURS[strategy]
+        ax.errorbar(x, y, bars, x_error, color=colour, lw=1, capsize=2, zorder=3)
+        ax.plot(x, y, _SHAPES[search], color=colour, ms=8, zorder=4)
+        _paper_dot(ax, search, strategy, cost)
+    ax.plot(*zip(*places, strict=True), color='#cccccc', lw=1.5, zorder=1)
+
+
+def _paper_dot(ax: Any, search: str, strategy: str, cost: str) -> None:
+    success = mark_of('planners', search, strategy, 'success')
+    states = mark_of('planners', search, strategy, cost)
+    if success is None:
         return
-    if estimate['mean'] is not None:
-        mean, distances = error_bars(estimate)
-        ax.bar(x, mean, _WIDTH * 0.92, color=COLOURS[strategy])
-        ax.errorbar(x, mean, distances, color=BLACK, lw=1, capsize=2)
-    published = _PAPER.get(('planners', search, strategy, measure))
-    if published is not None:
-        ax.plot(x, published, 'D', mfc='white', mec=BLACK, ms=5, zorder=5)
+    if states is None:  # none weighs no subgoals
+        if strategy != 'none' or cost != 'subgoal_planning_cost':
+            return
+        value, kind = 0.0, success.kind
+    else:
+        value = states.value / _UNITS[cost][0]
+        kind = Kind.PRINTED if {success.kind, states.kind} == {Kind.PRINTED} else Kind.ANALYSIS
+    ax.plot(success.value, value, zorder=5, **style_of(kind, COLOURS[strategy]))
+    ax.annotate(
+        SEARCH_NAMES[search],
+        (success.value, value),
+        xytext=(0, 6 if search == 'astar' else -6),  # so that neighbours are told apart
+        textcoords='offset points',
+        ha='center',
+        va='bottom' if search == 'astar' else 'top',
+        fontsize=7,
+    )
 
 
-def figure_3(trials: pd.DataFrame, decisions: pd.DataFrame, preset_names: list[str]) -> Figure:
-    """The sand plot: how many rows the subgoals of scoping add, over lambda."""
-    panels = {'BFS': planners_of(trials, preset_names[0]).query("search == 'bfs'")}
-    for name in preset_names:
-        chosen = planners_of(trials, name)
-        panels[f'A* ({name})'] = chosen[chosen['search'] == 'astar']
-    figure = new_figure(9.5, 3.4)
-    with styled():
-        axes = figure.subplots(1, len(panels), sharey=True)
-        for ax, (name, part) in zip(axes, panels.items(), strict=True):
-            shares = _shares_of_sizes(part, decisions)
-            colours = [_sand(index, shares.shape[1]) for index in range(shares.shape[1])]
-            ax.stackplot(
-                1000 * shares.index.to_numpy(float),
-                shares.to_numpy().T,
-                colors=colours,
-                labels=[f'{size}' for size in shares.columns],
-                edgecolor='white',
-                linewidth=0.3,
-            )
-            ax.set_title(name)
-            ax.set_xlabel('lambda\n[cells per 1000 states]')
-            ax.set_xlim(0, 1000 * shares.index.max())
-            ax.set_ylim(0, 1)
-        axes[0].set_ylabel('share of executed subgoals')
-        handles, labels = axes[0].get_legend_handles_labels()
-        figure.legend(handles[::-1], labels[::-1], loc='outside right center', title='rows\nadded')
-    return figure
-
-
-def _sand(index: int, count: int) -> Any:
-    import matplotlib as mpl
-
-    return mpl.colormaps['cividis'](index / max(1, count - 1))
-
-
-def _shares_of_sizes(trials: pd.DataFrame, decisions: pd.DataFrame) -> pd.DataFrame:
-    """Share of the executed subgoals by the rows they add: index lambda, columns 1 to highest."""
-    scoping = trials.loc[trials['strategy'] == 'scoping', ['trial_id', 'lambda']]
-    chosen = decisions.merge(scoping, on='trial_id').query('executed > 0')
-    chosen = chosen.assign(top=chosen['rows'].map(lambda rows: rows[-1]).astype(int))
-    chosen = chosen.sort_values(['trial_id', 'decision'])
-    before = chosen.groupby('trial_id', observed=True)['top'].shift(fill_value=0)
-    sizes = pd.crosstab(chosen['lambda'], chosen['top'] - before, normalize='index')
-    return sizes.reindex(columns=range(1, int(sizes.columns.max()) + 1), fill_value=0.0)
+def _legend(ax: Any) -> list[Any]:
+    shapes = [
+        ax.plot([], [], shape, color='#777777', label=f'ours, {SEARCH_NAMES[search]}')[0]
+        for search, shape in _SHAPES.items()
+    ]
+    colours = [
+        ax.plot([], [], '-', lw=6, color=COLOURS[strategy], label=strategy)[0]
+        for strategy in STRATEGIES
+    ]
+    return [*shapes, *legend_handles(ax), *colours]
 
 
 _PANELS = ('action_planning_cost', 'success', 'subgoals', 'subgoal_planning_cost', 'blocks')
 
 
-def figure_4(presets: dict[str, Results]) -> Figure:
-    """Five measures of scoping over lambda (rows A to E) for each search (columns)."""
-    groups = _searches(presets)
-    figure = new_figure(9.5, 11)
+def figure_4(results: Results) -> Figure:
+    """Five measures of scoping over lambda (A to E) for each search (columns)."""
+    figure = new_figure(9.5, 12)
     with styled():
-        axes = figure.subplots(len(_PANELS), len(groups), sharey='row')
-        for row, measure in zip(axes, _PANELS, strict=True):
-            for ax, (search, results) in zip(row, groups.values(), strict=True):
+        axes = figure.subplots(len(_PANELS), len(SEARCH_NAMES), sharey='row')
+        for letter, row, measure in zip('ABCDE', axes, _PANELS, strict=True):
+            for ax, (search, name) in zip(row, SEARCH_NAMES.items(), strict=True):
                 _curve(ax, measure, search, results)
+                ax.set_title(f'{letter}  {name}')
+                _tell_r(ax, measure, search, results)
             row[0].set_ylabel(MEASURE_LABELS[measure])
             if measure.endswith('planning_cost'):
                 row[0].set_yscale('log')
-        for letter, row in zip('ABCDE', axes, strict=True):
-            row[0].set_title(letter, fontweight='bold')
-        for ax, name in zip(axes[0], groups, strict=True):
-            ax.set_title(name.replace('\n', ' '), loc='center')
         for ax in axes[-1]:
             ax.set_xlabel('lambda [cells per 1000 states]')
         handles, labels = axes[0][0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc='outside lower center', ncols=3)
+        marks = legend_handles(axes[0][0])
+        figure.legend(
+            [*handles, *marks],
+            [*labels, *(mark.get_label() for mark in marks)],
+            loc='outside lower center',
+            ncols=5,
+        )
     return figure
 
 
@@ -161,21 +150,19 @@ def _curve(ax: Any, measure: str, search: str, results: Results) -> None:
             ax.axhline(level, color=COLOURS[strategy], lw=1.5, dashes=dashes, label=strategy)
     ax.fill_between(x, low, high, color=COLOURS['scoping'], alpha=0.25, lw=0)
     ax.plot(x, mean, color=COLOURS['scoping'], lw=1.5, label='scoping, 95 % interval')
-    r = over['correlation'][measure]['mean']
-    ax.annotate(
-        'r undefined' if r is None else f'r = {r:.2f}',
-        (0.98, 1.0),
-        xycoords='axes fraction',
-        ha='right',
-        va='bottom',
-        fontsize=8,
-    )
+    for strategy in STRATEGIES:
+        mark = mark_of('planners', search, strategy, measure)
+        if mark is not None:
+            style = style_of(mark.kind, COLOURS[strategy])
+            ax.plot(1.06 * x.max(), mark.value, clip_on=False, zorder=5, **style)
+    ax.set_xlim(0, 1.1 * x.max())
 
 
-def _searches(presets: dict[str, Results]) -> dict[str, tuple[str, Results]]:
-    """The searches as they are shown, with their results: BFS once, A* in every preset."""
-    first = next(iter(presets.values()))
-    shown = {SEARCH_NAMES['bfs']: ('bfs', first)}
-    for name, results in presets.items():
-        shown[f'{SEARCH_NAMES["astar"]}\n({name})'] = ('astar', results)
-    return shown
+def _tell_r(ax: Any, measure: str, search: str, results: Results) -> None:
+    """Our r, and the paper's printed one."""
+    ours = results['lambda'][search]['correlation'][measure]['mean']
+    paper = mark_of('lambda', search, 'correlation', measure)
+    words = 'r undefined' if ours is None else f'r = {ours:.2f}'
+    if paper is not None:
+        words += f' (paper {paper.value:.2f})'
+    ax.set_title(words, loc='right', fontsize=8, color=BLACK)

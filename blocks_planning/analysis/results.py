@@ -1,20 +1,29 @@
 """The numbers of a reproduction: what the paper reports, computed from a table of trials.
 
-Everything is drawn from one generator in a fixed order: same trials and seed, same numbers.
+Everything is drawn from one generator in a fixed order: same trials and seed, same numbers. An
+estimate is ``{"mean": ..., "ci": [low, high], "p": ..., "se": ...}``: mean, interval and p as the
+paper computes them, from one drawn run per silhouette, and the standard error of our own mean.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from blocks_planning.analysis.bootstrap import (
     Estimate,
     bootstrap_correlation,
     bootstrap_difference,
     bootstrap_mean,
+)
+from blocks_planning.analysis.own_error import (
+    correlation_of_means,
+    error_of_difference,
+    error_of_mean,
+    totals_of,
 )
 from blocks_planning.analysis.trials import (
     MEASURES,
@@ -23,6 +32,10 @@ from blocks_planning.analysis.trials import (
     planners_of,
     single_attempts_of,
 )
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pandas as pd
 
 STRATEGIES = ('none', 'scoping', 'full')
 DIFFERENCES = (('full', 'none'), ('scoping', 'full'), ('scoping', 'none'))
@@ -41,82 +54,101 @@ def summarise(trials: pd.DataFrame, preset: str, seed: int = SEED) -> dict[str, 
         ``planners``, ``table1``, ``lambda`` and ``differences`` as in ``results.json``; means
         over lambda are means over all scoping trials. Costs in states evaluated.
     """
-    rng = np.random.default_rng(seed)
+    statistics = _Statistics(sorted(trials['seed'].unique()), np.random.default_rng(seed))
     planners = planners_of(trials, preset)
-    searches = {name: planners[planners['search'] == name] for name in ('bfs', 'astar')}
+    by_search = {
+        name: {strategy: part[part['strategy'] == strategy] for strategy in STRATEGIES}
+        for name in ('bfs', 'astar')
+        for part in [planners[planners['search'] == name]]
+    }
     return {
-        'planners': {name: _planners(part, rng) for name, part in searches.items()},
-        'table1': _table1(single_attempts_of(trials, preset), rng),
-        'lambda': {name: _over_lambda(part, rng) for name, part in searches.items()},
+        'planners': {
+            search: {
+                strategy: statistics.levels(part, MEASURES) for strategy, part in parts.items()
+            }
+            for search, parts in by_search.items()
+        },
+        'table1': statistics.table1(single_attempts_of(trials, preset)),
+        'lambda': {
+            search: statistics.over_lambda(parts['scoping']) for search, parts in by_search.items()
+        },
         'differences': [
-            difference for name, part in searches.items() for difference in _pairs(name, part, rng)
+            {'search': search, 'first': first, 'second': second, 'measure': measure}
+            | statistics.difference(parts[first], parts[second], measure)
+            for search, parts in by_search.items()
+            for first, second in DIFFERENCES
+            for measure in MEASURES
         ],
     }
 
 
-def _planners(trials: pd.DataFrame, rng: np.random.Generator) -> dict[str, Any]:
-    return {
-        strategy: _estimates(trials[trials['strategy'] == strategy], MEASURES, rng)
-        for strategy in STRATEGIES
-    }
+class _Statistics:
+    """What is computed of parts of the table."""
+
+    def __init__(self, seeds: Sequence[int], rng: np.random.Generator) -> None:
+        self._seeds = seeds
+        self._rng = rng
+
+    def levels(self, trials: pd.DataFrame, measures: tuple[str, ...]) -> dict[str, Any]:
+        """The mean of each measure."""
+        return {
+            measure: _to_json(
+                bootstrap_mean(groups_of(trials, measure), self._rng),
+                error_of_mean(totals_of(trials, measure, self._seeds)),
+            )
+            for measure in measures
+        }
+
+    def difference(
+        self, first: pd.DataFrame, second: pd.DataFrame, measure: str
+    ) -> dict[str, Any]:
+        """``first`` minus ``second``."""
+        return _to_json(
+            bootstrap_difference(groups_of(first, measure), groups_of(second, measure), self._rng),
+            error_of_difference(
+                totals_of(first, measure, self._seeds), totals_of(second, measure, self._seeds)
+            ),
+        )
+
+    def table1(self, trials: pd.DataFrame) -> list[dict[str, Any]]:
+        """A row for each search: success of one attempt, and the cost of successful ones."""
+        rows = []
+        for settings, part in trials.groupby(
+            ['search', *SEARCH_SETTINGS], observed=True, dropna=False, sort=False
+        ):
+            named = dict(zip(('search', *SEARCH_SETTINGS), settings, strict=True))
+            row = {key: _plain(value) for key, value in named.items() if not pd.isna(value)}
+            row |= self.levels(part, ('success', 'solution_cost'))
+            row['states_evaluated'] = row.pop('solution_cost')
+            rows.append(row)
+        return rows
+
+    def over_lambda(self, scoping: pd.DataFrame) -> dict[str, Any]:
+        """Every measure of scoping at each lambda, and its correlation with lambda."""
+        parts = dict(list(scoping.groupby('lambda')))
+        levels = np.array(list(parts), float)
+        found: dict[str, Any] = {'values': levels.tolist(), 'measures': {}, 'correlation': {}}
+        for measure in MEASURES:
+            groups = [groups_of(part, measure) for part in parts.values()]
+            found['measures'][measure] = [
+                bootstrap_mean(group, self._rng).to_json() for group in groups
+            ]
+            totals = [totals_of(part, measure, self._seeds) for part in parts.values()]
+            of_means, error = correlation_of_means(levels, totals)
+            found['correlation'][measure] = {
+                **_to_json(bootstrap_correlation(levels, groups, self._rng), error),
+                'of_means': _or_none(of_means),
+            }
+        return found
 
 
-def _estimates(
-    trials: pd.DataFrame, measures: tuple[str, ...], rng: np.random.Generator
-) -> dict[str, Any]:
-    return {
-        measure: bootstrap_mean(groups_of(trials, measure), rng).to_json() for measure in measures
-    }
+def _to_json(estimate: Estimate, error: float) -> dict[str, Any]:
+    return {**estimate.to_json(), 'se': _or_none(error)}
 
 
-def _table1(trials: pd.DataFrame, rng: np.random.Generator) -> list[dict[str, Any]]:
-    """A row for each search: success of one attempt, and the cost of successful ones."""
-    rows = []
-    for settings, part in trials.groupby(
-        ['search', *SEARCH_SETTINGS], observed=True, dropna=False, sort=False
-    ):
-        named = dict(zip(('search', *SEARCH_SETTINGS), settings, strict=True))
-        row = {key: _plain(value) for key, value in named.items() if not pd.isna(value)}
-        row |= _estimates(part, ('success', 'solution_cost'), rng)
-        row['states_evaluated'] = row.pop('solution_cost')
-        rows.append(row)
-    return rows
+def _or_none(number: float) -> float | None:
+    return number if math.isfinite(number) else None
 
 
 def _plain(value: Any) -> Any:
     return value if isinstance(value, str) else int(value)
-
-
-def _over_lambda(trials: pd.DataFrame, rng: np.random.Generator) -> dict[str, Any]:
-    """Every measure of scoping at each lambda, and its correlation with lambda."""
-    scoping = trials[trials['strategy'] == 'scoping']
-    levels, parts = [], []
-    for level, part in scoping.groupby('lambda'):
-        levels.append(float(level))
-        parts.append(part)
-    found: dict[str, Any] = {'values': levels, 'measures': {}, 'correlation': {}}
-    for measure in MEASURES:
-        groups = [groups_of(part, measure) for part in parts]
-        found['measures'][measure] = [bootstrap_mean(group, rng).to_json() for group in groups]
-        r = bootstrap_correlation(np.array(levels), groups, rng)
-        found['correlation'][measure] = r.to_json()
-    return found
-
-
-def _pairs(search: str, trials: pd.DataFrame, rng: np.random.Generator) -> list[dict[str, Any]]:
-    by_strategy = {name: trials[trials['strategy'] == name] for name in STRATEGIES}
-    found = []
-    for first, second in DIFFERENCES:
-        for measure in MEASURES:
-            left, right = (groups_of(by_strategy[name], measure) for name in (first, second))
-            estimate: Estimate = bootstrap_difference(left, right, rng)
-            found.append(
-                {
-                    'search': search,
-                    'first': first,
-                    'second': second,
-                    'measure': measure,
-                    **estimate.to_json(),
-                }
-            )
-    return found

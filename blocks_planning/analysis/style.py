@@ -5,9 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+from blocks_planning.extras import extra
+
+with extra('figures'):
+    import matplotlib as mpl
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
 
 # Okabe and Ito (2008).
 COLOURS = {'none': '#999999', 'scoping': '#0072B2', 'full': '#D55E00', 'people': '#009E73'}

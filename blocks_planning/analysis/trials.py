@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 from blocks_planning.analysis.bootstrap import Groups
+from blocks_planning.analysis.paper_file import the_paper
 from blocks_planning.errors import InvalidInput
+from blocks_planning.extras import extra
 
-PRESETS = {
-    'text': {'divisor': 'smallest', 'execute': 'first'},
-    'published': {'divisor': 'mean', 'execute': 'path'},
-}
-"""A* as the paper's text describes it, and as its published numbers were made."""
+with extra('experiments'):
+    import pandas as pd
 
-PRESET_TEXT = {
-    'text': 'A* as the paper describes it: divisor smallest, execute first',
-    'published': 'A* as the published numbers were made: divisor mean, execute path',
-}
-SEARCH_SETTINGS = ('depth', 'iterations', 'divisor', 'execute')
+PRESETS = tuple(the_paper().presets)
+"""The names of the presets: how the published numbers were made, and the text to the letter."""
+
+SEARCH_SETTINGS = ('depth', 'dead_ends', 'iterations', 'divisor', 'execute')
+SETTINGS = ('commit', *SEARCH_SETTINGS)
 MEASURES = ('success', 'action_planning_cost', 'subgoal_planning_cost', 'blocks', 'subgoals')
 """Success is over all runs, everything else over the successful ones (paper, section "Results")."""
 
-_WORDS = ('experiment', 'stimulus', 'strategy', 'commit', 'search', 'divisor', 'execute', 'status')
+_WORDS = ('experiment', 'stimulus', 'strategy', 'search', 'status')
+_WORD_SETTINGS = ('commit', 'dead_ends', 'divisor', 'execute')
 
 
 def read_trials(folder: Path) -> pd.DataFrame:
@@ -37,7 +37,7 @@ def read_trials(folder: Path) -> pd.DataFrame:
     if not path.is_file():
         raise InvalidInput(f'{path}: is not there; has the sweep been finished?')
     trials = pd.read_parquet(path)
-    for name in _WORDS:
+    for name in (*_WORDS, *_WORD_SETTINGS):
         trials[name] = trials[name].astype('category')
     trials['success'] = (trials['status'] == 'success').to_numpy(bool)
     return trials
@@ -45,27 +45,33 @@ def read_trials(folder: Path) -> pd.DataFrame:
 
 def read_decisions(folder: Path) -> pd.DataFrame:
     """The table of decisions of a finished sweep: the columns that figures need."""
-    columns = ['trial_id', 'decision', 'rows', 'executed']
+    columns = ['trial_id', 'decision', 'tops', 'executed']
     return pd.read_parquet(folder / 'decisions.parquet', columns=columns)
+
+
+def settings_of(preset: str) -> dict[str, str]:
+    """The settings that a preset fixes, for every search and strategy that has them."""
+    return {switch['setting']: switch[preset] for switch in the_paper().switches}
 
 
 def planners_of(trials: pd.DataFrame, preset: str) -> pd.DataFrame:
     """The trials of the subgoal planners (budget above 0) in a preset."""
-    return _in_preset(trials[trials['budget'] > 0], preset)
+    return with_settings(trials[trials['budget'] > 0], settings_of(preset))
 
 
 def single_attempts_of(trials: pd.DataFrame, preset: str) -> pd.DataFrame:
     """The trials of a single attempt without subgoals (budget 0) in a preset."""
     alone = trials[(trials['budget'] == 0) & (trials['strategy'] == 'none')]
-    return _in_preset(alone, preset)
+    return with_settings(alone, settings_of(preset))
 
 
-def _in_preset(trials: pd.DataFrame, preset: str) -> pd.DataFrame:
-    wanted = (trials['search'] != 'astar').to_numpy(bool)
+def with_settings(trials: pd.DataFrame, settings: Mapping[str, str]) -> pd.DataFrame:
+    """The trials that have these settings; one that a search or strategy lacks does not matter."""
     same = np.ones(len(trials), bool)
-    for setting, value in PRESETS[preset].items():
-        same &= (trials[setting] == value).to_numpy(bool)
-    return trials[wanted | same]
+    for setting, value in settings.items():
+        column = trials[setting]
+        same &= (column.isna() | (column == value)).to_numpy(bool)
+    return trials[same]
 
 
 def groups_of(trials: pd.DataFrame, measure: str, unit: str = 'stimulus') -> Groups:

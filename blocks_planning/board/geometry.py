@@ -104,6 +104,10 @@ class Board:
         one_column = ((1 << height) - 1) << self.bit(column, row)
         return sum(one_column << (step * self.height) for step in range(width))
 
+    def rows_up_to(self, mask: Mask) -> int:
+        """Number of rows from the ground up to the highest cell of a mask; 0 if it is empty."""
+        return max((row + 1 for _, row in self.cells(mask)), default=0)
+
     def parse(self, rows: Sequence[str]) -> Mask:
         """The mask of a picture that :meth:`draw` made, top row first; the text is trusted."""
         return self.mask(

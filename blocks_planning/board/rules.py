@@ -36,6 +36,17 @@ def cells_of(board: Board, placed: Placed) -> Mask:
     return board.rectangle(placed.column, placed.row, placed.width, placed.height)
 
 
+def is_inside(board: Board, placed: Placed) -> bool:
+    """Whether a block is one, and lies inside the board."""
+    width, height, column, row = placed
+    return (
+        min(width, height) >= 1
+        and min(column, row) >= 0
+        and column + width <= board.width
+        and row + height <= board.height
+    )
+
+
 def possible_placements(board: Board, built: Mask, library: tuple[Block, ...]) -> Iterator[Placed]:
     """Every possible placement, block by block in library order, each from left to right."""
     for block in library:

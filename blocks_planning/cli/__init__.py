@@ -1,7 +1,8 @@
 """The ``blocks-planning`` command.
 
 Results go to stdout, progress and errors to stderr. Exit codes: 0 done, 1 a planner did not
-succeed or a record does not hold, 2 bad input, 130 interrupted.
+succeed or a record does not hold, 2 bad input, 3 a limit (of states, memory or time) was reached,
+130 interrupted.
 """
 
 from __future__ import annotations
@@ -12,12 +13,16 @@ from typing import NoReturn
 import click
 
 from blocks_planning import __version__
+from blocks_planning.cli.counting import count, exact
+from blocks_planning.cli.fitting import fit
 from blocks_planning.cli.graph import run
-from blocks_planning.cli.inspecting import count, draw, exact, stimuli, verify
+from blocks_planning.cli.inspecting import draw, verify
+from blocks_planning.cli.progress import LIMIT_REACHED
 from blocks_planning.cli.reproducing import exact_policy, growth, reproduce
 from blocks_planning.cli.running import solve, watch
+from blocks_planning.cli.stimuli import stimuli
 from blocks_planning.cli.sweeping import sweep
-from blocks_planning.errors import BlocksPlanningError
+from blocks_planning.errors import BlocksPlanningError, LimitExceeded
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -49,6 +54,7 @@ for command in (
     sweep,
     reproduce,
     growth,
+    fit,
 ):
     commands.add_command(command)
 
@@ -59,7 +65,7 @@ def main() -> None:
         code = commands.main(prog_name='blocks-planning', standalone_mode=False)
     except BlocksPlanningError as error:
         click.echo(f'Error: {error}', err=True)
-        code = BAD_INPUT
+        code = LIMIT_REACHED if isinstance(error, LimitExceeded) else BAD_INPUT
     except click.ClickException as error:
         error.show()
         code = error.exit_code

@@ -9,6 +9,8 @@ import sys
 import threading
 import time
 import webbrowser
+from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +18,7 @@ import click
 
 from blocks_planning.cli.options import refuse_nan
 from blocks_planning.errors import BlocksPlanningError
+from blocks_planning.extras import MissingExtra
 from blocks_planning.trials.reading import RecordTail, read_records
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.recordfile import RecordFile
@@ -97,6 +100,9 @@ def run(
         from blocks_planning.ros.bringup import Bringup, BringupSpec
     except ImportError as error:
         raise BlocksPlanningError(f'ROS 2 is not installed here: {error}') from None
+    if view:
+        import_module('blocks_planning.view.web.server')  # what is missing is said now
+    draw = _drawing(pictures, len(specs))
     page = (view_host, view_port) if view else None
     spec = BringupSpec(script, out, bag, namespace, domain, pace, participant, markers, page)
     records = RecordFile(spec.records)
@@ -119,8 +125,8 @@ def run(
             progress.on_tick(None)
     finally:
         ended = _summarise(spec.records, wanted)
-    if pictures or (pictures is None and len(specs) <= _MOST_PICTURES):
-        _draw(ended, out / 'pictures')
+    if draw is not None:
+        draw(ended, out / 'pictures')
     successes = sum(record.status is TrialStatus.SUCCESS for record in ended)
     return int(successes < len(specs))
 
@@ -160,12 +166,27 @@ def _summarise(path: Path, wanted: set[str]) -> list[TrialRecord]:
     return records
 
 
-def _draw(records: list[TrialRecord], folder: Path) -> None:
-    """Draw the first trials, and say where."""
-    if records:
-        from blocks_planning.view.gallery import print_gallery, save_gallery
+def _drawing(wanted: bool | None, trials: int) -> Callable[[list[TrialRecord], Path], None] | None:
+    """What draws the first trials into a folder; None if no pictures are wanted.
 
-        print_gallery(save_gallery(records, folder, _MOST_PICTURES))
+    Raises:
+        MissingExtra: if pictures were asked for and what draws them is not installed.
+    """
+    if wanted is False or (wanted is None and trials > _MOST_PICTURES):
+        return None
+    try:
+        from blocks_planning.view.gallery import print_gallery, save_gallery
+    except MissingExtra as error:
+        if wanted:
+            raise
+        click.echo(f'No pictures: {error}', err=True)
+        return None
+
+    def draw(records: list[TrialRecord], folder: Path) -> None:
+        if records:
+            print_gallery(save_gallery(records, folder, _MOST_PICTURES))
+
+    return draw
 
 
 class _Progress:

@@ -1,107 +1,19 @@
-"""Commands that look at stimuli and records."""
+"""Commands that look at records."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
-from functools import partial
 from pathlib import Path
 from types import ModuleType
 
 import click
 
-from blocks_planning.board.stimuli import installed_sets, read_file
-from blocks_planning.cli.interrupt import interruptible
-from blocks_planning.cli.options import (
-    find_all,
-    json_option,
-    library_option,
-    stimuli_argument,
-    task_of,
-)
 from blocks_planning.errors import ConfigurationError, RecordError
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.status import TrialStatus
 
 _RECORD = click.Path(path_type=Path, exists=False)
-
-
-@click.group(
-    invoke_without_command=True,
-    epilog='\b\nExamples:\n  blocks-planning stimuli\n  blocks-planning stimuli show cogsci2021/9',
-)
-@click.pass_context
-def stimuli(context: click.Context) -> None:
-    """List the sets of silhouettes that ship with the package."""
-    if context.invoked_subcommand is None:
-        for name, path in installed_sets().items():
-            silhouettes = read_file(path)
-            sizes = sorted({f'{board.width}x{board.height}' for board, _ in silhouettes.values()})
-            click.echo(f'{name}: {len(silhouettes)} silhouettes, {", ".join(sizes)} cells')
-
-
-@stimuli.command(epilog='\b\nExample:\n  blocks-planning stimuli show cogsci2021/9')
-@stimuli_argument
-def show(addresses: tuple[str, ...]) -> None:
-    """Draw silhouettes."""
-    for index, stimulus in enumerate(find_all(addresses)):
-        click.echo('\n' * bool(index) + f'# {stimulus.name}\n\n{stimulus.draw()}')
-
-
-@click.command(epilog='\b\nExample:\n  blocks-planning count cogsci2021 --depth 5 --json')
-@stimuli_argument
-@click.option('--depth', type=click.IntRange(1, 64), default=4, show_default=True)
-@library_option
-@json_option
-def count(addresses: tuple[str, ...], depth: int, library: str, as_json: bool) -> None:
-    """Count the states that a breadth-first search evaluates.
-
-    The numbers are tree nodes at depths 1 to n, summed, for n = 1 to --depth, from the empty
-    board: what bfs evaluates when it finds nothing.
-    """
-    from blocks_planning.search.compiled import count_states
-
-    for stimulus in find_all(addresses):
-        task = task_of(stimulus, library)
-        counts, interrupted = interruptible(partial(count_states, task, depth))
-        if interrupted:
-            raise KeyboardInterrupt
-        if as_json:
-            click.echo(json.dumps({'stimulus': stimulus.name, 'counts': counts}))
-        else:
-            click.echo(f'{stimulus.name}: ' + '  '.join(f'{number:,}' for number in counts or []))
-
-
-@click.command(epilog='\b\nExample:\n  blocks-planning exact cogsci2021/9 --json')
-@stimuli_argument
-@library_option
-@json_option
-def exact(addresses: tuple[str, ...], library: str, as_json: bool) -> None:
-    """Find the fewest blocks, and the number of arrangements, or prove that there are none."""
-    from blocks_planning.search.exact import analyse
-
-    for stimulus in find_all(addresses):
-        task = task_of(stimulus, library)
-        answer, interrupted = interruptible(partial(analyse, task))
-        if interrupted or answer is None:
-            raise KeyboardInterrupt
-        if as_json:
-            found = {
-                'stimulus': stimulus.name,
-                'fewest_blocks': answer.fewest_blocks,
-                'arrangements': answer.arrangements,
-                'by_rows': answer.by_rows,
-                'placements': answer.placements,
-            }
-            click.echo(json.dumps(found))
-            continue
-        fewest = 'impossible' if answer.fewest_blocks is None else f'{answer.fewest_blocks} blocks'
-        rows = ' '.join('-' if number is None else str(number) for number in answer.by_rows)
-        click.echo(
-            f'{stimulus.name}: {fewest}, {answer.arrangements:,} arrangements; '
-            f'by number of rows: {rows}'
-        )
 
 
 @click.command(

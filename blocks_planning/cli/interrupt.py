@@ -1,14 +1,31 @@
-"""Work that Ctrl-C ends at once, and in good order."""
+"""Work that Ctrl-C or a time limit ends at once, and in good order."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from time import monotonic
+from typing import Generic, NamedTuple, TypeVar
 
 from blocks_planning.search.result import CancelToken
 
 T = TypeVar('T')
+TICK_S = 0.1
+"""How often the main thread looks at a time limit and shows progress [s]."""
+
+
+class Ended(NamedTuple, Generic[T]):
+    """How a piece of work ended.
+
+    Attributes:
+        result: what the function returned.
+        interrupted: whether Ctrl-C ended it.
+        timed_out: whether the time limit ended it.
+    """
+
+    result: T
+    interrupted: bool
+    timed_out: bool
 
 
 class _Work(threading.Thread, Generic[T]):
@@ -32,6 +49,10 @@ class _Work(threading.Thread, Generic[T]):
             self._error = error
         self._ended.set()
 
+    def ends_within(self, duration_s: float) -> bool:
+        """Wait, but not longer than that; return whether the function has ended."""
+        return self._ended.wait(duration_s)
+
     def wait(self) -> T:
         """What the function returned."""
         self._ended.wait()  # a join() that was interrupted once would not wait again
@@ -40,17 +61,39 @@ class _Work(threading.Thread, Generic[T]):
         return self._result
 
 
+def supervised(
+    function: Callable[[CancelToken], T],
+    tick: Callable[[], None] = lambda: None,
+    time_limit_s: float | None = None,
+) -> Ended[T]:
+    """Call a function; cancel its token on the first Ctrl-C, or when the time limit is reached.
+
+    Args:
+        function: called in a thread of its own; it has to return soon once its token is used.
+        tick: called now and then in this thread while the function runs.
+        time_limit_s: most time that the function may take [s]; None for any.
+    """
+    cancel = CancelToken()
+    work = _Work(lambda: function(cancel))
+    began = monotonic()
+    work.start()
+    try:
+        while not work.ends_within(TICK_S):
+            tick()
+            if time_limit_s is not None and monotonic() - began >= time_limit_s:
+                cancel.cancel()
+                return Ended(work.wait(), False, True)
+        return Ended(work.wait(), False, False)
+    except KeyboardInterrupt:
+        cancel.cancel()
+        return Ended(work.wait(), True, False)
+
+
 def interruptible(function: Callable[[CancelToken], T]) -> tuple[T, bool]:
     """Call a function; on the first Ctrl-C cancel its token, and wait for what it returns then.
 
     Returns:
         (what the function returned, whether it was interrupted)
     """
-    cancel = CancelToken()
-    work = _Work(lambda: function(cancel))
-    work.start()
-    try:
-        return work.wait(), False
-    except KeyboardInterrupt:
-        cancel.cancel()
-        return work.wait(), True
+    ended = supervised(function)
+    return ended.result, ended.interrupted

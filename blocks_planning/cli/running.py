@@ -16,6 +16,18 @@ from blocks_planning.cli.options import (
     specs_of,
     stimuli_argument,
 )
+from blocks_planning.cli.progress import (
+    LIMIT_REACHED,
+    QUIET_S,
+    Job,
+    Progress,
+    each,
+    time_limit_option,
+)
+from blocks_planning.errors import BlocksPlanningError
+from blocks_planning.search.result import CancelToken
+from blocks_planning.trials.limits import ended_at_a_limit
+from blocks_planning.trials.messages import Message, PlaceBlock, SearchAnswer
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
@@ -44,23 +56,36 @@ Examples:
     show_default=True,
     help='Number of trials per stimulus, with seeds from --seed upwards.',
 )
+@time_limit_option
 @json_option
-def solve(addresses: tuple[str, ...], seeds: int, as_json: bool, **options: Any) -> int:
+def solve(
+    addresses: tuple[str, ...],
+    seeds: int,
+    time_limit_s: float | None,
+    as_json: bool,
+    **options: Any,
+) -> int:
     """Run trials and print a table, or a record per line.
 
-    The exit code is 1 if a tower was not rebuilt perfectly.
+    The exit code is 1 if a tower was not rebuilt perfectly, and 3 if a trial was ended by the time
+    limit, or a search outgrew its memory (1 GB).
     """
     specs = specs_of(addresses, seeds, options)
     records = []
-    for record in _with_progress(_run_all(specs), len(specs)):
+    limited = False
+    for record, problem in _run_all(specs, time_limit_s):
         records.append(record)
+        limited = limited or bool(problem)
         if as_json:
             click.echo(record.to_line())
+        if problem:
+            place = f'{record.spec.stimulus}, seed {record.spec.seed}'
+            click.echo(f'{place}: {record.status.value}: {problem}', err=True)
     if not as_json:
         from blocks_planning.view.tables import print_summary
 
         print_summary(records)
-    return _exit_code(records)
+    return LIMIT_REACHED if limited else _exit_code(records)
 
 
 @click.command(epilog=_WATCH_EXAMPLES)
@@ -90,25 +115,61 @@ def watch(addresses: tuple[str, ...], pause: float, **options: Any) -> int:
     return _exit_code(records)
 
 
-def _run_all(specs: list[TrialSpec]) -> Iterator[TrialRecord]:
-    """Run trials in order; an interrupted one is handed out too, as cancelled."""
-    from blocks_planning.trials.local import run_trial
+def _run_all(
+    specs: list[TrialSpec], time_limit_s: float | None
+) -> Iterator[tuple[TrialRecord, str]]:
+    """Run trials in order; each with the limit that it reached, or ''.
 
-    for spec in specs:
-        record, interrupted = interruptible(partial(run_trial, spec))
-        yield record
-        if interrupted:
-            raise KeyboardInterrupt
+    An interrupted trial is handed out too, as cancelled. What takes long is said on stderr when
+    it is done, as the table is printed only at the end.
+    """
+    progress = Progress()
+    jobs = (_job_of(spec) for spec in specs)
+    for outcome in each('solve', jobs, len(specs), time_limit_s, progress):
+        record = outcome.result
+        if record is None:  # a trial always gives a record
+            raise BlocksPlanningError(f'{outcome.name}: {outcome.problem}')
+        if len(specs) > 1 and outcome.took_s > QUIET_S:
+            seconds = f'{outcome.took_s:,.1f} s'
+            progress.say(
+                f'{outcome.name}: {record.status.value}, {record.blocks} blocks, {seconds}'
+            )
+        yield record, outcome.problem or _memory_limit_of(record)
 
 
-def _with_progress(records: Iterator[TrialRecord], total: int) -> Iterator[TrialRecord]:
-    """Show on stderr how far it is, if somebody looks there."""
-    from rich.console import Console
-    from rich.progress import track
+def _job_of(spec: TrialSpec) -> Job[TrialRecord]:
+    watched = _Watched(spec)
+    return Job(f'{spec.stimulus}, seed {spec.seed}', watched.run, watched)
 
-    console = Console(stderr=True)
-    hidden = total == 1 or not console.is_terminal
-    return track(records, 'Trials', total=total, console=console, transient=True, disable=hidden)  # type: ignore[return-value]
+
+class _Watched:
+    """A trial that says as text how far it is."""
+
+    def __init__(self, spec: TrialSpec) -> None:
+        self._spec = spec
+        self._blocks = self._states = 0
+
+    def run(self, cancel: CancelToken) -> TrialRecord:
+        """Run it, until the token is used."""
+        from blocks_planning.trials.local import run_trial
+
+        return run_trial(self._spec, cancel, self._observe)
+
+    def _observe(self, message: Message) -> None:
+        if isinstance(message, SearchAnswer):
+            self._states += message.result.planning_cost
+        elif isinstance(message, PlaceBlock):
+            self._blocks += 1
+
+    def __str__(self) -> str:
+        return f'{self._blocks} blocks placed, {self._states:,} states'
+
+
+def _memory_limit_of(record: TrialRecord) -> str:
+    """What to say of a trial that ended because a search outgrew its memory, or ''."""
+    if not ended_at_a_limit(record):
+        return ''
+    return f'a region is too large for the memory of {record.spec.search.name}'
 
 
 def _exit_code(records: list[TrialRecord]) -> int:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+
+from blocks_planning.cli.progress import bar
 
 if TYPE_CHECKING:
     from blocks_planning.experiments.sweeping import Summary
@@ -42,47 +42,10 @@ def sweep(spec: str, out: Path, workers: int | None, dask: str | None) -> int:
     from blocks_planning.experiments.sweeping import run_sweep
 
     wanted = read_sweep(find_sweep(spec))
-    with progress('Trials') as report:
+    with bar('Trials') as report:
         summary = run_sweep(wanted, out, workers or default_workers(), dask, report)
     print_summary(summary, out)
     return int(summary.failed > 0)
-
-
-@contextmanager
-def progress(what: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar on stderr with rate and time left, if somebody looks there; yields its setter."""
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield lambda _done, _total: None
-        return
-    columns = (
-        TextColumn('{task.description}'),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn('{task.fields[rate]}'),
-        TimeElapsedColumn(),
-        TextColumn('left'),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(what, total=None, rate='')
-
-        def report(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total)
-            speed = bar.tasks[0].speed
-            bar.update(task, rate=f'{speed:,.0f}/s' if speed else '')
-
-        yield report
 
 
 def print_summary(summary: Summary, out: Path) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from blocks_planning import settings
 from blocks_planning.errors import LimitExceeded
 from blocks_planning.experiments.spec import SweepSpec
+from blocks_planning.extras import extra
 from blocks_planning.search.policy import analyse_policy
 from blocks_planning.search.result import DEFAULT_BUDGET, Problem
 from blocks_planning.search.searches import BreadthFirst, RandomPlacement, Search
@@ -25,7 +26,8 @@ def exact_table(sweep: SweepSpec, workers: int, budget: int = DEFAULT_BUDGET) ->
         ``within_budget``: success of attempts until ``budget`` [states], mean over towers. The
         numbers are None if a tower outgrows the limit of states.
     """
-    from joblib import Parallel, delayed
+    with extra('experiments'):
+        from joblib import Parallel, delayed
 
     searches = [
         search

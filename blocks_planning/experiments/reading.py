@@ -14,10 +14,11 @@
           - {name: bfs, depth: [2, 3]}
         strategies:
           - {name: scoping, lambda: {from: 0, to: 0.008, count: 64}}
+        worlds: [{name: simulated}]   # optional: one that obeys if left out
 
-A setting of a search or a strategy may be a list, or evenly spaced numbers ``{from, to, count}``
-with both ends: then there is one search or strategy for each value, and for each combination of
-values if there are several lists. Paths of stimuli are relative to the working directory.
+A setting may be a list, or evenly spaced numbers ``{from, to, count}`` with both ends: then there
+is one search, strategy or world for each value, and for each combination of values if there are
+several lists. Paths of stimuli are relative to the working directory.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from blocks_planning.trials.script import (
     read_seeds,
     read_text,
     read_towers,
+    read_worlds,
 )
 
 
@@ -68,10 +70,11 @@ def read_sweep(path: Path) -> SweepSpec:
 
 
 def _experiment(item: Located) -> Experiment:
-    entries = item.entries('name', 'searches', 'strategies', optional=('budget',))
+    entries = item.entries('name', 'searches', 'strategies', optional=('budget', 'worlds'))
     return Experiment(
         name=read_text(entries['name']),
         searches=tuple(read_planners(entries['searches'], make_search)),
         strategies=tuple(read_planners(entries['strategies'], make_planner)),
         budget=read_budget(entries),
+        worlds=tuple(read_worlds(entries)),
     )

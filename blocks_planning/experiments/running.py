@@ -13,6 +13,7 @@ from blocks_planning.errors import ConfigurationError
 from blocks_planning.experiments.spec import Chunk
 from blocks_planning.experiments.tables import Tables
 from blocks_planning.experiments.working import run_chunk
+from blocks_planning.extras import extra
 
 Results = Generator[tuple[Chunk, Tables], None, None]
 
@@ -23,12 +24,15 @@ IN_FLIGHT_PER_THREAD = 4
 
 def default_workers() -> int:
     """Number of processors that this process may use."""
-    return len(os.sched_getaffinity(0))
+    if hasattr(os, 'sched_getaffinity'):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1  # macOS and Windows bind no process to processors
 
 
 def run_here(chunks: Sequence[Chunk], workers: int) -> Results:
     """Run chunks in so many processes of this machine; one runs them in this process."""
-    from joblib import Parallel, delayed
+    with extra('experiments'):
+        from joblib import Parallel, delayed
 
     if workers == 1 or len(chunks) < 2:
         for chunk in chunks:
@@ -51,7 +55,8 @@ def run_on_dask(chunks: Sequence[Chunk], address: str) -> Results:
     Raises:
         ConfigurationError: if nothing answers at the address.
     """
-    from dask.distributed import Client, as_completed
+    with extra('experiments'):
+        from dask.distributed import Client, as_completed
 
     try:
         client = Client(address, timeout=CONNECT_TIMEOUT_S, set_as_default=False)

@@ -20,25 +20,28 @@ from blocks_planning.search.searches import Search
 from blocks_planning.subgoals.decision import Strategy
 from blocks_planning.trials.script import Tower
 from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.worlds.world import Simulated, World
 
 SEEDS_PER_CHUNK = 8
 
 
 @dataclass(frozen=True)
 class Experiment:
-    """Every search with every strategy.
+    """Every search with every strategy in every world.
 
     Attributes:
         name: by which rows of the tables say where they come from.
         searches: the action-level searches.
         strategies: the subgoal planners.
         budget: b of every solve [states]; 0 for a single attempt.
+        worlds: in which they are tried.
     """
 
     name: str
     searches: tuple[Search, ...]
     strategies: tuple[Strategy, ...]
     budget: int = DEFAULT_BUDGET
+    worlds: tuple[World, ...] = (Simulated(),)
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,9 @@ class Chunk:
                         search=search,
                         seed=seed,
                         budget=self.experiment.budget,
+                        world=world,
                     )
+                    for world in self.experiment.worlds
                     for strategy in self.experiment.strategies
                 ]
 
@@ -69,7 +74,8 @@ class Chunk:
     def trials(self) -> int:
         """Number of trials."""
         experiment = self.experiment
-        return len(experiment.searches) * len(self.seeds) * len(experiment.strategies)
+        planners = len(experiment.searches) * len(experiment.strategies)
+        return planners * len(experiment.worlds) * len(self.seeds)
 
     @cached_property
     def chunk_id(self) -> str:
@@ -124,6 +130,7 @@ def experiment_to_json(experiment: Experiment) -> dict[str, Any]:
         'budget': experiment.budget,
         'searches': [_thing_to_json(search) for search in experiment.searches],
         'strategies': [_thing_to_json(strategy) for strategy in experiment.strategies],
+        'worlds': [_thing_to_json(world) for world in experiment.worlds],
     }
 
 

@@ -19,12 +19,14 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-import pyarrow.parquet as pq
-
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.experiments.spec import Chunk, SweepSpec
 from blocks_planning.experiments.tables import Tables, join
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pyarrow as pa
+    import pyarrow.parquet as pq
 
 MANIFEST = 'manifest.json'
 

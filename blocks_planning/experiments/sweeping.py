@@ -8,13 +8,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import pyarrow.compute as pc
-
 from blocks_planning.experiments.manifest import provenance
 from blocks_planning.experiments.running import run_here, run_on_dask
 from blocks_planning.experiments.spec import SweepSpec
 from blocks_planning.experiments.store import Store, read_table
 from blocks_planning.experiments.tables import FAILED
+from blocks_planning.extras import extra
+
+with extra('experiments'):
+    import pyarrow.compute as pc
 
 Report = Callable[[int, int], None]
 """Is told how many trials are done, and how many there are."""

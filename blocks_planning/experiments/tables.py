@@ -1,8 +1,11 @@
-"""The three tables of a sweep: one row per trial, per decision, per placement.
+"""The tables of a sweep.
 
-``trials``      who built what from which seed, how it ended, and what it cost [states]
-``decisions``   each time a planner chose: what it considered, and what it went for
-``placements``  each block that was placed, where it came to rest [cells]
+``trials``        a row per trial: planner, world, seed, status, costs [states] and measures
+``decisions``     a row per decision: what was considered, and what was chosen
+``placements``    a row per block that stands at the end [cells]
+``observations``  a row per observation after the first: what was ordered, what landed, what is
+                  gone; only of worlds that need not obey, because in others each observation is
+                  its placement
 
 ``trial_id`` joins them. A trial that could not be run has status ``failed`` and says why in
 ``error``; its numbers are empty, and it has no rows in the other tables.
@@ -10,53 +13,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-import pyarrow as pa
 
+from blocks_planning.board.geometry import Board
+from blocks_planning.extras import extra
 from blocks_planning.subgoals.decision import Decision
+from blocks_planning.trials.flat import flat_settings, flat_values
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
-from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.trials.spec import FAMILIES, TrialSpec
+
+with extra('experiments'):
+    import pyarrow as pa
 
 FAILED = 'failed'
 
 _WORD = pa.dictionary(pa.int32(), pa.string())
 
-TRIALS = pa.schema(
-    [
-        ('trial_id', pa.string()),
-        ('experiment', _WORD),
-        ('stimulus', _WORD),
-        ('strategy', _WORD),
-        ('lambda', pa.float64()),
-        ('commit', _WORD),
-        ('search', _WORD),
-        ('depth', pa.int32()),
-        ('iterations', pa.int32()),
-        ('divisor', _WORD),
-        ('execute', _WORD),
-        ('seed', pa.uint64()),
-        ('budget', pa.int64()),
-        ('status', _WORD),
-        ('error', pa.string()),
-        ('blocks', pa.int32()),
-        ('subgoals', pa.int32()),
-        ('action_planning_cost', pa.int64()),
-        ('subgoal_planning_cost', pa.int64()),
-        ('solution_cost', pa.int64()),
-    ]
-)
+_TYPES = {bool: pa.bool_(), int: pa.int64(), float: pa.float64(), str: _WORD}
+_MEASURES = ('recall', 'precision', 'f1', 'iou')
+_COSTS = ('action_planning_cost', 'subgoal_planning_cost', 'solution_cost')
+
+
+def trials_schema() -> pa.Schema:
+    """The columns of the table of trials: one for each setting of each family."""
+    return pa.schema(
+        [
+            ('trial_id', pa.string()),
+            ('experiment', _WORD),
+            ('stimulus', _WORD),
+            *((family, _WORD) for family in FAMILIES),
+            *((flat.name, _TYPES[flat.kind]) for flat in flat_settings()),
+            ('seed', pa.uint64()),
+            ('budget', pa.int64()),
+            ('status', _WORD),
+            ('error', pa.string()),
+            *((name, pa.int32()) for name in ('blocks', 'orders', 'surprises', 'subgoals')),
+            *((name, pa.int64()) for name in _COSTS),
+            *((name, pa.float64()) for name in _MEASURES),
+        ]
+    )
+
+
 DECISIONS = pa.schema(
     [
         ('trial_id', _WORD),
         ('decision', pa.int32()),
-        ('placed', pa.int32()),  # blocks before it
+        ('sequence', pa.int32()),  # of the observation in whose state it was made
         ('built', pa.string()),  # the state, as a hexadecimal mask
         ('candidates', pa.int32()),
+        ('sequences', pa.int64()),  # chains that exist; more than the candidates if sampled
         ('solved', pa.int32()),  # candidates that are
-        ('rows', pa.list_(pa.int32())),  # heights of the chosen regions; none if it gave up
+        ('regions', pa.list_(pa.string())),  # labels of the chosen regions; empty if it gave up
+        ('tops', pa.list_(pa.int32())),  # number of rows up to the top of each chosen region
         ('cells', pa.int32()),  # that the chosen candidate adds
         ('planning_cost', pa.int64()),  # of the chosen candidate
         ('value', pa.float64()),  # of the chosen candidate, if anything was weighed
@@ -77,15 +88,30 @@ PLACEMENTS = pa.schema(
 )
 
 
+OBSERVATIONS = pa.schema(
+    [
+        ('trial_id', _WORD),
+        ('sequence', pa.int32()),
+        ('ordered', pa.list_(pa.int8())),  # width, height, column; null if nothing was ordered
+        ('landed', pa.list_(pa.list_(pa.int8()))),  # width, height, column, row of each block
+        ('gone', pa.list_(pa.list_(pa.int8()))),  # the same of blocks that stood before
+        ('as_ordered', pa.bool_()),
+    ]
+)
+
+
 class Tables(NamedTuple):
     """The tables of a sweep, or of a part of it."""
 
     trials: pa.Table
     decisions: pa.Table
     placements: pa.Table
+    observations: pa.Table
 
 
-SCHEMAS = Tables(TRIALS, DECISIONS, PLACEMENTS)
+def schemas() -> Tables:
+    """The schema of each table."""
+    return Tables(trials_schema(), DECISIONS, PLACEMENTS, OBSERVATIONS)
 
 
 class Failure(NamedTuple):
@@ -100,60 +126,76 @@ def make_tables(experiment: str, outcomes: Sequence[TrialRecord | Failure]) -> T
     records = [outcome for outcome in outcomes if isinstance(outcome, TrialRecord)]
     trials = [_trial_row(experiment, outcome) for outcome in outcomes]
     decisions = [
-        {'trial_id': record.spec.trial_id, 'decision': index, **_decision_row(entry)}
+        {'trial_id': record.spec.trial_id, 'decision': index, **_decision_row(record, entry)}
         for record in records
         for index, entry in enumerate(record.decisions)
     ]
     return Tables(
-        pa.Table.from_pylist(trials, TRIALS),
+        pa.Table.from_pylist(trials, trials_schema()),
         pa.Table.from_pylist(decisions, DECISIONS),
         _placement_table(records),
+        pa.Table.from_pylist(list(_observation_rows(records)), OBSERVATIONS),
     )
 
 
 def _trial_row(experiment: str, outcome: TrialRecord | Failure) -> dict[str, Any]:
-    known = outcome.spec.to_json()
-    row = {'trial_id': outcome.spec.trial_id, 'experiment': experiment}
-    row |= {key: known[key] for key in ('stimulus', 'strategy', 'lambda', 'commit', 'search')}
-    row |= known['search_settings']
-    row |= {'seed': known['seed'], 'budget': known['budget']}
+    spec = outcome.spec
+    row = {
+        'trial_id': spec.trial_id,
+        'experiment': experiment,
+        'stimulus': spec.stimulus,
+        **{family: getattr(spec, family).name for family in FAMILIES},
+        **flat_values(spec, flat_settings()),
+        'seed': spec.seed,
+        'budget': spec.budget,
+    }
     if isinstance(outcome, Failure):
         return {**row, 'status': FAILED, 'error': outcome.error}
-    return {
-        **row,
-        'status': outcome.status.value,
-        'blocks': outcome.blocks,
-        'subgoals': outcome.subgoals,
-        'action_planning_cost': outcome.action_planning_cost,
-        'subgoal_planning_cost': outcome.subgoal_planning_cost,
-        'solution_cost': outcome.solution_cost,
-    }
+    return {**row, 'status': outcome.status.value, **outcome.summary()}
 
 
-def _decision_row(entry: DecisionRecord) -> dict[str, Any]:
+def _decision_row(record: TrialRecord, entry: DecisionRecord) -> dict[str, Any]:
     decision = entry.decision
     row = {
-        'placed': entry.placed,
+        'sequence': entry.sequence,
         'built': hex(decision.built),
         'candidates': len(decision.candidates),
-        'solved': sum(candidate.status == 'solved' for candidate in decision.candidates),
+        'sequences': decision.sequences,
+        'solved': sum(candidate.is_solved for candidate in decision.candidates),
         'executed': entry.executed,
         'considered': sum(candidate.planning_cost for candidate in decision.candidates),
         'subgoal_planning_cost': decision.subgoal_planning_cost,
     }
-    return {**row, **_chosen(decision)}
+    return {**row, **_chosen(decision, record.spec.task.board)}
 
 
-def _chosen(decision: Decision) -> dict[str, Any]:
+def _chosen(decision: Decision, board: Board) -> dict[str, Any]:
     if decision.chosen is None:
-        return {'rows': []}
+        return {'regions': [], 'tops': []}
     candidate = decision.candidates[decision.chosen]
     return {
-        'rows': list(candidate.heights),
+        'regions': [str(region.label) for region in candidate.regions],
+        'tops': [board.rows_up_to(region.cells) for region in candidate.regions],
         'cells': candidate.cells,
         'planning_cost': candidate.planning_cost,
         'value': candidate.value,
     }
+
+
+def _observation_rows(records: Sequence[TrialRecord]) -> Iterator[dict[str, Any]]:
+    """A row per observation after the first, of the trials whose world need not obey."""
+    for record in records:
+        if record.spec.world.obeys:
+            continue
+        for sequence, seen in enumerate(record.observations[1:], start=1):
+            yield {
+                'trial_id': record.spec.trial_id,
+                'sequence': sequence,
+                'ordered': seen.ordered and [*seen.ordered.block, seen.ordered.column],
+                'landed': [list(placed) for placed in seen.landed],
+                'gone': [list(placed) for placed in seen.gone],
+                'as_ordered': seen.is_as_ordered,
+            }
 
 
 def _placement_table(records: Sequence[TrialRecord]) -> pa.Table:
@@ -182,7 +224,7 @@ def join(parts: Sequence[Tables]) -> Tables:
             if tables
             else schema.empty_table()
             for tables, schema in zip(
-                list(zip(*parts, strict=True)) or [(), (), ()], SCHEMAS, strict=True
+                list(zip(*parts, strict=True)) or [(), (), (), ()], schemas(), strict=True
             )
         )
     )

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from blocks_planning.experiments.spec import Chunk
 from blocks_planning.experiments.tables import Failure, Tables, make_tables
-from blocks_planning.search.result import SolveResult, SolveStatus
+from blocks_planning.search.result import SolveResult
 from blocks_planning.subgoals.decision import Query
 from blocks_planning.trials.following import follow
+from blocks_planning.trials.limits import ended_at_a_limit
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
-from blocks_planning.trials.status import TrialStatus
 
 
 def run_chunk(chunk: Chunk) -> Tables:
@@ -30,14 +30,6 @@ def _run(spec: TrialSpec, answers: dict[Query, SolveResult]) -> TrialRecord | Fa
         record = follow(spec, answers)
     except Exception as error:  # noqa: BLE001  it is kept, shown, and makes the sweep fail
         return Failure(spec, f'{type(error).__name__}: {error}')
-    if _ended_at_a_limit(record):
+    if ended_at_a_limit(record):
         return Failure(spec, f'{spec.search.name}: the search would have outgrown its memory')
     return record
-
-
-def _ended_at_a_limit(record: TrialRecord) -> bool:
-    """Whether a planner gave up without knowing if there is a way."""
-    if record.status is not TrialStatus.GAVE_UP:
-        return False
-    candidates = record.decisions[-1].decision.candidates
-    return any(candidate.status is SolveStatus.LIMIT_EXCEEDED for candidate in candidates)

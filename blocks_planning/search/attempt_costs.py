@@ -26,6 +26,11 @@ class Arrivals:
         self.expected = 0.0
         self._parts: list[Costs] = []
 
+    @property
+    def size(self) -> int:
+        """Number of costs that are kept."""
+        return sum(len(part.cost) for part in self._parts)
+
     def add(self, probability: float, expected: float, costs: Costs) -> None:
         """Add a way."""
         self.probability += probability

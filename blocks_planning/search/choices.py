@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -11,8 +12,12 @@ from blocks_planning.board.geometry import Mask
 from blocks_planning.board.kernels.masks import WORD_BITS, pack
 from blocks_planning.board.task import Task
 from blocks_planning.search.compiled import tables_of
-from blocks_planning.search.kernels import breadth_first, random_placement
+from blocks_planning.search.kernels import breadth_first, lookahead, random_placement
 from blocks_planning.search.result import CancelToken, Problem
+from blocks_planning.search.searches import BreadthFirst
+
+CHUNK = 1 << 15
+"""Most states from which random placements are spread at a time."""
 
 
 class Way(NamedTuple):
@@ -43,11 +48,13 @@ class Chooser:
     A state is its shadow (see :mod:`.moves`) and its number of filled cells.
     """
 
-    def __init__(self, task: Task, region: Mask, depth: int, cancel: CancelToken) -> None:
-        """A search of some depth for a region; ``cancel`` makes it answer None."""
+    def __init__(
+        self, task: Task, region: Mask, search: BreadthFirst, cancel: CancelToken
+    ) -> None:
+        """A search for a region; ``cancel`` makes it answer None."""
         tables = tables_of(task, region)
         self._tables, self._cancel = tables, cancel
-        self._search = breadth_first.make_search(tables, depth)
+        self._search = lookahead.make_search(tables, search.depth, search.dead_ends_last)
         words = tables.shadow.reshape(len(tables.shadow), -1).tolist()
         self._shadows = [
             sum(word << WORD_BITS * index for index, word in enumerate(row)) for row in words
@@ -110,6 +117,13 @@ def spread_at_random(problem: Problem, filled: int, layer: Layer) -> dict[int, L
         filled + int(size): join_layers([Layer(after[areas == size], chances[areas == size])])
         for size in np.unique(areas)
     }
+
+
+def chunks_of(layer: Layer) -> Iterator[Layer]:
+    """A layer in parts of at most ``CHUNK`` states, to bound the memory of what follows them."""
+    for first in range(0, len(layer.chances), CHUNK):
+        part = slice(first, first + CHUNK)
+        yield Layer(layer.states[part], layer.chances[part])
 
 
 def join_layers(layers: list[Layer]) -> Layer:

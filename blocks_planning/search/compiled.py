@@ -1,170 +1,260 @@
-"""From a problem to the kernels' arguments, and back to a result."""
+"""From problems to the kernels' arguments, and back to results."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from blocks_planning.board import rules
-from blocks_planning.board.blocks import Placed
+from blocks_planning.board.blocks import Library, Placed
 from blocks_planning.board.geometry import Board, Mask, area
-from blocks_planning.board.kernels.masks import pack, words_of
-from blocks_planning.board.kernels.moves import Tables, make_tables
+from blocks_planning.board.kernels.masks import pack
+from blocks_planning.board.kernels.moves import Tables, footprints_of, make_tables
 from blocks_planning.board.task import Task
 from blocks_planning.errors import BlocksPlanningError, LimitExceeded
-from blocks_planning.search.kernels import best_first, breadth_first, random_placement
-from blocks_planning.search.kernels.attempts import Question, run_attempts
-from blocks_planning.search.kernels.outcomes import CANCELLED, COMPLETE, OUT_OF_MEMORY, STUCK
+from blocks_planning.search.kernels import breadth_first, lookahead
+from blocks_planning.search.kernels.attempts import Conditions
+from blocks_planning.search.kernels.batch import Batch, solve_batch
+from blocks_planning.search.kernels.outcomes import (
+    CANCELLED,
+    COMPLETE,
+    NO_PLACEMENT,
+    NOT_ASKED,
+    OUT_OF_MEMORY,
+    SOLVED_ALREADY,
+    STUCK,
+)
 from blocks_planning.search.result import CancelToken, Problem, SolveResult, SolveStatus
 
 _STATUS = {
     COMPLETE: SolveStatus.SOLVED,
     STUCK: SolveStatus.BUDGET_EXHAUSTED,
     CANCELLED: SolveStatus.CANCELLED,
+    SOLVED_ALREADY: SolveStatus.SOLVED,
+    NO_PLACEMENT: SolveStatus.UNSOLVABLE_PROVEN,
 }
+_MASK_BYTES = 32
 
-_NODES_PER_ITERATION = 64
-_MOST_NODES_AT_FIRST = 1 << 20
-MAX_NODES = 1 << 27
-"""Most places in the queue of a best-first search, 8 bytes each."""
+MakeMemory = Callable[[Task, Tables, int, int], Any]
+"""The memory of a search: of (task, its tables, most cells to be filled, growth); see :mod:`.memory`."""
 
 tables_of = lru_cache(maxsize=4096)(make_tables)
 """The tables of (task, region), made once."""
 
 
-def solve_at_random(problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
-    """Solve by random placements."""
-    tables = tables_of(problem.task, problem.region)
-    return _solve(random_placement.make_search(tables), tables, problem, seed, budget, cancel)
+class Solver:
+    """Solves problems of one task with one search, seed and budget; for one thread."""
 
+    def __init__(
+        self,
+        task: Task,
+        make_memory: MakeMemory,
+        most_left: int,
+        seed: int,
+        budget: int,
+        cancel: CancelToken,
+    ) -> None:
+        """A solver.
 
-def solve_breadth_first(
-    problem: Problem, depth: int, seed: int, budget: int, cancel: CancelToken
-) -> SolveResult:
-    """Solve by breadth-first lookahead of ``depth`` placements."""
-    tables = tables_of(problem.task, problem.region)
-    return _solve(breadth_first.make_search(tables, depth), tables, problem, seed, budget, cancel)
-
-
-def solve_best_first(
-    problem: Problem,
-    iterations: int,
-    g_weight: int,
-    divisor: float,
-    whole_path: bool,
-    seed: int,
-    budget: int,
-    cancel: CancelToken,
-) -> SolveResult:
-    """Solve by A* or best-first search: f = g_weight * blocks placed + cells left / divisor."""
-    tables = tables_of(problem.task, problem.region)
-    most_left = tables.target - area(problem.built)
-    most_blocks = most_left // int(tables.area.min()) + 1
-    search = best_first.make_search(
-        tables,
-        iterations,
-        _buckets(most_blocks, most_left, g_weight, divisor),
-        whole_path,
-        nodes=min(_NODES_PER_ITERATION * iterations, _MOST_NODES_AT_FIRST),
-    )
-    return _solve(search, tables, problem, seed, budget, cancel)
-
-
-@lru_cache(maxsize=4096)
-def _buckets(most_blocks: int, most_left: int, g_weight: int, divisor: float) -> np.ndarray:
-    """The rank of f, from 0, by blocks placed and cells left: int64 (blocks + 1, left + 1).
-
-    f is the float64 that the formula gives. Values that are equal as fractions can differ in
-    their last bit, and then are not equal.
-    """
-    placed, left = np.indices((most_blocks + 1, most_left + 1))
-    f = g_weight * placed + left / divisor
-    _, rank = np.unique(f, return_inverse=True)
-    return rank.reshape(f.shape).astype(np.int64)
-
-
-def _solve(
-    search: Any, tables: Tables, problem: Problem, seed: int, budget: int, cancel: CancelToken
-) -> SolveResult:
-    path = np.zeros(tables.cells, np.int64)
-    question = Question(
-        shadow=pack([rules.shadow(problem.task.board, problem.built)], tables.cells),
-        filled=area(problem.built),
-        seed_words=_seed_words(seed, problem),
-        budget=budget,
-        generator=np.zeros(1, np.uint64),
-        cancel=cancel.flag,
-        path=path,
-    )
-    while (answer := run_attempts(search, tables, question))[0] == OUT_OF_MEMORY:
-        search = search._replace(arena=_larger(search.arena))
-    outcome, length, solution_cost, planning_cost, attempts = answer
-    solved = outcome == COMPLETE
-    return SolveResult(
-        status=_STATUS[outcome],
-        placements=placements_of(problem, path[:length].tolist()) if solved else (),
-        solution_cost=solution_cost if solved else 0,
-        planning_cost=planning_cost,
-        attempts=attempts,
-    )
-
-
-def _larger(arena: np.ndarray) -> np.ndarray:
-    """Room for more nodes in the queue of a search."""
-    if 4 * arena.size > MAX_NODES:
-        raise LimitExceeded(
-            f'the queue of the search outgrows {arena.size} nodes; allow fewer iterations'
+        Args:
+            task: of every problem.
+            make_memory: the memory of the search.
+            most_left: most cells that are to be filled in a problem.
+            seed: of the trial.
+            budget: b [states].
+            cancel: ends a solve from another thread.
+        """
+        self._task, self._make, self._most_left = task, make_memory, most_left
+        self._footprints = footprints_of(task.board, task.library)
+        nowhere = tables_of(task, 0)
+        self._tables: Tables = nowhere._replace(legal=nowhere.legal.copy())
+        self._most_placements = most_left // int(nowhere.area.min())
+        seed_words = np.zeros(9, np.uint64)
+        seed_words[0] = seed
+        self._conditions = Conditions(
+            seed_words=seed_words,
+            budget=budget,
+            generator=np.zeros(1, np.uint64),
+            cancel=cancel.flag,
+            path=np.zeros(task.board.size, np.int64),
         )
-    return np.empty(4 * arena.size, np.int64)
+        self._growth = 0
+        self._memory = make_memory(task, self._tables, most_left, 0)
+
+    def run(self, problems: Sequence[Problem], stop: np.ndarray) -> list[SolveResult | None]:
+        """Solve problems without the GIL.
+
+        Args:
+            problems: of the task.
+            stop: uint8 (1,), other than 0 to take up no further problem from then on.
+
+        Returns:
+            Their results; None for those that were not taken up.
+        """
+        batch = self._batch(problems, stop)
+        self._solve(batch)
+        return [
+            self._answer(batch, index, problem, outcome)
+            for index, (problem, outcome) in enumerate(
+                zip(problems, batch.outcome.tolist(), strict=True)
+            )
+        ]
+
+    def run_one(self, problem: Problem) -> SolveResult:
+        """Solve a problem; the search gets more memory as long as it has too little.
+
+        Raises:
+            LimitExceeded: if it would outgrow its memory.
+        """
+        while True:
+            batch = self._batch([problem], np.zeros(1, np.uint8))
+            self._solve(batch)
+            if batch.outcome[0] != OUT_OF_MEMORY:
+                return _result(batch, 0, problem)
+            growth = self._growth + 1
+            self._memory = self._make(self._task, self._tables, self._most_left, growth)
+            self._growth = growth
+
+    def _answer(
+        self, batch: Batch, index: int, problem: Problem, outcome: int
+    ) -> SolveResult | None:
+        if outcome == NOT_ASKED:
+            return None
+        if outcome != OUT_OF_MEMORY:
+            return _result(batch, index, problem)
+        try:
+            return self.run_one(problem)
+        except LimitExceeded:
+            return SolveResult(SolveStatus.LIMIT_EXCEEDED, attempts=1)
+
+    def _batch(self, problems: Sequence[Problem], stop: np.ndarray) -> Batch:
+        cells, number = self._tables.cells, len(problems)
+        masks = b''.join(
+            mask.to_bytes(_MASK_BYTES, 'little')
+            for problem in problems
+            for mask in (problem.built, problem.region)
+        )
+        words = np.frombuffer(masks, '<u8').astype(np.uint64).reshape(number, 8)
+        wide = cells > 64
+        return Batch(
+            built=np.ascontiguousarray(words[:, :4] if wide else words[:, 0]),
+            region=np.ascontiguousarray(words[:, 4:] if wide else words[:, 4]),
+            seed_words=words,
+            steps=self._task.board.height,
+            stop=stop,
+            outcome=np.full(number, NOT_ASKED, np.int64),
+            length=np.zeros(number, np.int64),
+            path=np.zeros((number, self._most_placements), np.int64),
+            solution_cost=np.zeros(number, np.int64),
+            planning_cost=np.zeros(number, np.int64),
+            attempts=np.zeros(number, np.int64),
+        )
+
+    def _solve(self, batch: Batch) -> None:
+        solve_batch(self._memory, self._tables, self._footprints.mask, batch, self._conditions)
 
 
-def _seed_words(seed: int, problem: Problem) -> np.ndarray:
-    masks = words_of([problem.built, problem.region])
-    return np.concatenate([np.array([seed], np.uint64), masks.ravel()])
+def _result(batch: Batch, index: int, problem: Problem) -> SolveResult:
+    status = _STATUS[int(batch.outcome[index])]
+    solved = status is SolveStatus.SOLVED
+    path = batch.path[index, : batch.length[index]].tolist() if solved else []
+    return SolveResult(
+        status=status,
+        placements=placements_of(problem, path),
+        solution_cost=int(batch.solution_cost[index]) if solved else 0,
+        planning_cost=int(batch.planning_cost[index]),
+        attempts=int(batch.attempts[index]),
+    )
+
+
+def solve_one(
+    problem: Problem, make_memory: MakeMemory, seed: int, budget: int, cancel: CancelToken
+) -> SolveResult:
+    """Solve a problem with a compiled search.
+
+    Raises:
+        LimitExceeded: if the search would outgrow its memory.
+    """
+    left = area(problem.region) - area(problem.built)
+    return Solver(problem.task, make_memory, left, seed, budget, cancel).run_one(problem)
+
+
+class _Step(NamedTuple):
+    """A move as a placement; masks."""
+
+    placed: Placed
+    cells: Mask
+    below: Mask  # the cells just below it; 0 on the ground
+    shadow: Mask
+
+
+class _Steps:
+    """The moves of a library on a board, each looked up once."""
+
+    def __init__(self, board: Board, library: Library) -> None:
+        self._board, self._library = board, library
+        self._known: dict[int, _Step] = {}
+
+    def __getitem__(self, move: int) -> _Step:
+        if move not in self._known:
+            self._known[move] = self._find(move)
+        return self._known[move]
+
+    def _find(self, move: int) -> _Step:
+        board = self._board
+        block, bit = divmod(move, board.size)
+        size, (column, row) = self._library[block], board.cell(bit)
+        placed = Placed(*size, column, row)
+        cells = rules.cells_of(board, placed)
+        below = board.rectangle(column, row - 1, size.width, 1) if row > 0 else 0
+        return _Step(placed, cells, below, rules.shadow(board, cells))
+
+
+_steps_of = lru_cache(maxsize=64)(_Steps)
 
 
 def placements_of(problem: Problem, moves: list[int]) -> tuple[Placed, ...]:
-    """The placements of some moves (see :class:`Tables`), replayed through the rules.
+    """The placements of some moves (see :class:`Tables`), each held to the rules.
 
     Raises:
         BlocksPlanningError: if a move is not legal, which would be a defect of a kernel.
     """
+    if not moves:
+        return ()
     task = problem.task
-    built: Mask = problem.built
+    steps = _steps_of(task.board, task.library)
+    shadow, outside = rules.shadow(task.board, problem.built), ~problem.region
     placements = []
     for move in moves:
-        block, bit = divmod(move, task.board.size)
-        size, (column, row) = task.library[block], task.board.cell(bit)
-        placed = Placed(*size, column, row)
-        cells = rules.cells_of(task.board, placed)
-        if rules.drop(task.board, built, placed.placement) != placed or cells & ~problem.region:
-            raise BlocksPlanningError(f'a search proposed {placed}, which is not legal')
-        placements.append(placed)
-        built |= cells
+        step = steps[move]
+        rests = not step.below or step.below & shadow
+        if step.cells & (shadow | outside) or not rests:
+            raise BlocksPlanningError(f'a search proposed {step.placed}, which is not legal')
+        placements.append(step.placed)
+        shadow |= step.shadow
     return tuple(placements)
 
 
-def count_states(task: Task, depth: int, cancel: CancelToken) -> list[int] | None:
+def count_states(
+    task: Task, depth: int, cancel: CancelToken, counts: np.ndarray | None = None
+) -> list[int] | None:
     """Tree nodes at depths 1 to n, summed, for n = 1 to ``depth``; None if cancelled.
 
     It is what a breadth-first search from the empty board evaluates when nothing is found.
+
+    Args:
+        task: silhouette and blocks.
+        depth: n, 1 or more.
+        cancel: ends it from another thread.
+        counts: int64 (depth,), all 0: each number is written there as soon as it is known, also
+            if the count is cancelled later.
     """
     nowhere = tables_of(task, task.silhouette)._replace(target=-1)
-    counts = np.zeros(depth, np.int64)
-    search = breadth_first.make_search(nowhere, depth + 1)
+    counts = np.zeros(depth, np.int64) if counts is None else counts
+    search = lookahead.make_search(nowhere, depth + 1)
     empty = pack([0], nowhere.cells)
     finished = breadth_first.count_from(search, nowhere, empty, cancel.flag, counts)
     return counts.tolist() if finished else None
-
-
-def warm_up() -> None:
-    """Have every kernel for boards of up to 64 cells compiled, or loaded from the cache."""
-    board = Board(2, 2)
-    problem = Problem(Task(board, board.full), 0, board.full)
-    cancel = CancelToken()
-    solve_at_random(problem, 0, 0, cancel)
-    solve_breadth_first(problem, 2, 0, 0, cancel)
-    solve_best_first(problem, 4, 1, 2.0, False, 0, 0, cancel)
-    count_states(problem.task, 2, cancel)

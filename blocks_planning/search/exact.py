@@ -17,11 +17,12 @@ import numpy as np
 
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placed
-from blocks_planning.board.geometry import Board, Mask
-from blocks_planning.board.kernels.masks import WORD_BITS, pack, words_of
+from blocks_planning.board.geometry import Board, Mask, area
+from blocks_planning.board.kernels.masks import WORD_BITS, pack
 from blocks_planning.board.task import Task
 from blocks_planning.errors import LimitExceeded
 from blocks_planning.search.compiled import placements_of
+from blocks_planning.search.gauge import Gauge
 from blocks_planning.search.kernels.tiling import (
     CANCELLED,
     NO_MOVE,
@@ -44,12 +45,14 @@ class ExactAnswer:
     Attributes:
         fewest_blocks: that rebuild the silhouette; None if nothing does.
         arrangements: number of different sets of placed blocks that rebuild it.
+        optimal_arrangements: number of those that have ``fewest_blocks`` blocks.
         by_rows: fewest blocks for the regions rows(1) to rows(height).
         placements: one way with fewest blocks, in an order in which it can be built.
     """
 
     fewest_blocks: int | None
     arrangements: int
+    optimal_arrangements: int
     by_rows: tuple[int | None, ...]
     placements: tuple[Placed, ...] | None
 
@@ -62,8 +65,15 @@ class _CountOverflow(Exception):
     """Arrangements need more words."""
 
 
-def analyse(task: Task, cancel: CancelToken | None = None) -> ExactAnswer | None:
+def analyse(
+    task: Task, cancel: CancelToken | None = None, gauge: Gauge | None = None
+) -> ExactAnswer | None:
     """Fewest blocks and number of arrangements of a silhouette; None if cancelled.
+
+    Args:
+        task: silhouette and blocks.
+        cancel: ends it from another thread.
+        gauge: is told how far it is; a step is a cell.
 
     Raises:
         LimitExceeded: if more than ``MAX_STATES`` states would be stored; nothing else ends it.
@@ -71,7 +81,7 @@ def analyse(task: Task, cancel: CancelToken | None = None) -> ExactAnswer | None
     problem = Problem(task, 0, task.silhouette)
     words = 1
     while True:
-        program = _Program(problem, words, cancel or CancelToken())
+        program = _Program(problem, words, cancel or CancelToken(), gauge or Gauge())
         try:
             program.run()
         except _CountOverflow:
@@ -79,10 +89,11 @@ def analyse(task: Task, cancel: CancelToken | None = None) -> ExactAnswer | None
             continue
         except _Cancelled:
             return None
-        fewest, arrangements = program.answer_at(task.board.height)
+        fewest, arrangements, optimal = program.answer_at(task.board.height)
         return ExactAnswer(
             fewest_blocks=fewest,
             arrangements=arrangements,
+            optimal_arrangements=optimal,
             by_rows=tuple(program.answer_at(k)[0] for k in range(1, task.board.height + 1)),
             placements=None if fewest is None else program.placements(),
         )
@@ -94,7 +105,7 @@ def solve_exactly(problem: Problem, cancel: CancelToken) -> SolveResult:
     Raises:
         LimitExceeded: see :func:`analyse`.
     """
-    program = _Program(problem, 0, cancel)
+    program = _Program(problem, 0, cancel, Gauge())
     try:
         program.run()
     except _Cancelled:
@@ -108,14 +119,15 @@ def solve_exactly(problem: Problem, cancel: CancelToken) -> SolveResult:
 class _Program:
     """The dynamic program of one problem; ``words`` 64-bit words count arrangements."""
 
-    def __init__(self, problem: Problem, words: int, cancel: CancelToken) -> None:
+    def __init__(self, problem: Problem, words: int, cancel: CancelToken, gauge: Gauge) -> None:
         self._problem = problem
+        self._gauge = gauge
         self._board = problem.task.board
         self._words = words
         self._cancel = cancel
         self._mask_shape = pack([0], self._board.size).shape[1:]
         self._ways: list[tuple[np.ndarray, np.ndarray]] = []
-        self._answers: dict[int, tuple[int | None, int]] = {}
+        self._answers: dict[int, tuple[int | None, int, int]] = {}
         self.generated = 0
 
     def run(self) -> None:
@@ -126,17 +138,20 @@ class _Program:
         layer = make_layer(1, self._mask_shape, self._words)
         layer.filled[:] = pack([problem.built], board.size)
         layer.fewest[:] = 0
-        layer.arrangements[:] = words_of([1])[:, :1]
-        layer.arrangements[:, 1:] = 0
-        stored = 0
+        for counts in (layer.arrangements, layer.optimal):
+            counts[:] = 0
+            counts[:, :1] = 1
+        gauge = self._gauge
+        gauge.done, gauge.total, gauge.states = 0, area(problem.region & ~problem.built), 0
         for row in range(board.height):
             for column in range(board.width):
                 cell = board.mask([(column, row)])
                 if cell & problem.region & ~problem.built:
                     layer = self._fill(layer, cell)
                     self._ways.append((layer.parent, layer.move))
-                    stored += len(layer.move)
-                    if stored > MAX_STATES:
+                    gauge.done += 1
+                    gauge.states += len(layer.move)
+                    if gauge.states > MAX_STATES:
                         raise self._too_large()
             self._keep_answer(row + 1, layer)
 
@@ -182,13 +197,15 @@ class _Program:
         region = self._problem.region & self._board.rows_below(height) | self._problem.built
         same = layer.filled == pack([region], self._board.size)[0]
         for state in np.flatnonzero(same if same.ndim == 1 else same.all(axis=1)):
-            words = layer.arrangements[state].tolist()
-            count = sum(word << WORD_BITS * index for index, word in enumerate(words))
-            self._answers[height] = int(layer.fewest[state]), count
+            self._answers[height] = (
+                int(layer.fewest[state]),
+                _count_of(layer.arrangements[state]),
+                _count_of(layer.optimal[state]),
+            )
 
-    def answer_at(self, height: int) -> tuple[int | None, int]:
-        """Fewest blocks and number of arrangements of the rows below a height."""
-        return self._answers.get(height, (None, 0))
+    def answer_at(self, height: int) -> tuple[int | None, int, int]:
+        """Fewest blocks, arrangements, and those with the fewest, of the rows below a height."""
+        return self._answers.get(height, (None, 0, 0))
 
     def placements(self) -> tuple[Placed, ...]:
         """A way to fill the region with fewest blocks, by rising bottom row."""
@@ -206,6 +223,11 @@ class _Program:
             f'exact: a region of this shape on {board.width} x {board.height} cells needs more '
             f'than the limit of {MAX_STATES} states'
         )
+
+
+def _count_of(words: np.ndarray) -> int:
+    """The number that some words stand for, the lowest first."""
+    return sum(word << WORD_BITS * index for index, word in enumerate(words.tolist()))
 
 
 def _fits(board: Board, placed: Placed) -> bool:

@@ -23,13 +23,23 @@ from blocks_planning.board import rules
 from blocks_planning.board.geometry import area
 from blocks_planning.errors import ConfigurationError, LimitExceeded
 from blocks_planning.search.attempt_costs import Arrivals, Costs, expected_attempts
-from blocks_planning.search.choices import Chooser, join_layers, layer_of, spread_at_random
+from blocks_planning.search.choices import (
+    CHUNK,
+    Chooser,
+    chunks_of,
+    join_layers,
+    layer_of,
+    spread_at_random,
+)
+from blocks_planning.search.gauge import Gauge
 from blocks_planning.search.result import DEFAULT_BUDGET, MAX_BUDGET, CancelToken, Problem
 from blocks_planning.search.searches import BreadthFirst, RandomPlacement, Search
 from blocks_planning.settings import check_whole
 
 MAX_STATES = 2_000_000
 """Most states that the dynamic program looks at, unless told otherwise."""
+MAX_COSTS = 40_000_000
+"""Most costs that are kept at a time, over all states, 16 bytes each: 640 MB."""
 MAX_EXACT_BUDGET = 10_000_000
 """Largest budget for which costs are kept to the single state [states]."""
 
@@ -61,6 +71,7 @@ def analyse_policy(
     budget: int = DEFAULT_BUDGET,
     limit: int = MAX_STATES,
     cancel: CancelToken | None = None,
+    gauge: Gauge | None = None,
 ) -> ExactPolicy | None:
     """The exact values of bfs or random on a problem; None if cancelled.
 
@@ -70,21 +81,24 @@ def analyse_policy(
         budget: b [states].
         limit: most states that the dynamic program looks at.
         cancel: ends it from another thread.
+        gauge: is told how far it is; a step is a number of filled cells.
 
     Raises:
         ConfigurationError: for another search, or a budget out of its range.
-        LimitExceeded: if more states can be reached than ``limit``.
+        LimitExceeded: if more states can be reached than ``limit``, or more than ``MAX_COSTS``
+            costs would have to be kept at a time.
     """
-    cancel = cancel or CancelToken()
+    cancel, gauge = cancel or CancelToken(), gauge or Gauge()
+    gauge.total = area(problem.region) - area(problem.built)
     if isinstance(search, RandomPlacement):
         check_whole('budget', budget, 0, MAX_BUDGET)
-        return _analyse_random(problem, budget, limit, cancel)
+        return _analyse_random(problem, budget, limit, cancel, gauge)
     if not isinstance(search, BreadthFirst):
         raise ConfigurationError(
             f'search must be bfs or random for exact values, got {search.name!r}'
         )
     check_whole('budget', budget, 0, MAX_EXACT_BUDGET)
-    program = _Program(problem, search, budget, limit, cancel)
+    program = _Program(problem, search, budget, limit, cancel, gauge)
     if not program.run():
         return None
     won, lost = program.won, program.lost
@@ -102,7 +116,7 @@ def analyse_policy(
 
 
 def _analyse_random(
-    problem: Problem, budget: int, limit: int, cancel: CancelToken
+    problem: Problem, budget: int, limit: int, cancel: CancelToken, gauge: Gauge
 ) -> ExactPolicy | None:
     """Random placement costs nothing, so that only its success is to be found.
 
@@ -110,17 +124,21 @@ def _analyse_random(
     """
     layers = {area(problem.built): [layer_of(problem)]}
     target = area(problem.region)
-    looked_at = 0
     for filled in range(area(problem.built), target):
-        if cancel.cancelled:
-            return None
-        if filled in layers:
-            layer = join_layers(layers.pop(filled))
-            looked_at += len(layer.chances)
-            if looked_at > limit:
+        for chunk in chunks_of(join_layers(layers.pop(filled))) if filled in layers else ():
+            if cancel.cancelled:
+                return None
+            gauge.states += len(chunk.chances)
+            if gauge.states > limit:
                 raise _too_large(problem, 'random', limit)
-            for after, part in spread_at_random(problem, filled, layer).items():
-                layers.setdefault(after, []).append(part)
+            for after, part in spread_at_random(problem, filled, chunk).items():
+                parts = layers.setdefault(after, [])
+                parts.append(part)
+                if sum(len(one.chances) for one in parts) > max(limit, CHUNK):
+                    parts[:] = [join_layers(parts)]
+                    if after < target and gauge.states + len(parts[0].chances) > limit:
+                        raise _too_large(problem, 'random', limit)
+        gauge.done += 1
     success = float(sum(part.chances.sum() for part in layers.get(target, [])))
     return ExactPolicy(
         success=success,
@@ -128,7 +146,7 @@ def _analyse_random(
         cost_of_success=0.0 if success else None,
         within_budget=1 - (1 - success) ** max(1, budget),
         budget=budget,
-        states=looked_at,
+        states=gauge.states,
     )
 
 
@@ -140,17 +158,33 @@ def _too_large(problem: Problem, name: str, limit: int) -> LimitExceeded:
     )
 
 
+def _too_many_costs(problem: Problem, name: str) -> LimitExceeded:
+    board = problem.task.board
+    return LimitExceeded(
+        f'exact-policy: {name} on this silhouette of {board.width} x {board.height} cells needs '
+        f'to keep more than the limit of {MAX_COSTS} costs; a smaller budget needs fewer'
+    )
+
+
 class _Program:
     """The dynamic program; ``won`` and ``lost`` are the ends of an attempt."""
 
     def __init__(
-        self, problem: Problem, search: BreadthFirst, budget: int, limit: int, cancel: CancelToken
+        self,
+        problem: Problem,
+        search: BreadthFirst,
+        budget: int,
+        limit: int,
+        cancel: CancelToken,
+        gauge: Gauge,
     ) -> None:
         self._problem = problem
         self._search = search
         self._budget = budget
         self._limit = limit
         self._cancel = cancel
+        self._gauge = gauge
+        self._kept = 1
         self.won, self.lost = Arrivals(), Arrivals()
         self.states = 0
 
@@ -162,15 +196,19 @@ class _Program:
         shadow = rules.shadow(problem.task.board, problem.built)
         target = area(problem.region)
         layers: dict[int, dict[int, Arrivals]] = {area(problem.built): {shadow: start}}
-        depth = self._search.depth
-        chooser = Chooser(problem.task, problem.region, depth, self._cancel)
+        chooser = Chooser(problem.task, problem.region, self._search, self._cancel)
         for filled in range(area(problem.built), target):
             for state, arrivals in layers.pop(filled, {}).items():
                 self.states += 1
+                self._gauge.states = self.states
                 if self.states > self._limit:
                     raise _too_large(problem, self._search.name, self._limit)
                 if not self._leave(chooser, state, filled, arrivals, layers):
                     return False
+                self._kept -= arrivals.size
+                if self._kept > MAX_COSTS:
+                    raise _too_many_costs(problem, self._search.name)
+            self._gauge.done += 1
         for arrivals in layers.get(target, {}).values():
             self.won.add(arrivals.probability, arrivals.expected, arrivals.costs())
         return True
@@ -203,4 +241,5 @@ class _Program:
             there = layer.setdefault(way.shadow, Arrivals())
             part = Costs(after.cost, after.probability * share)
             there.add(probability * share, expected * share, part)
+            self._kept += len(part.cost)
         return True

@@ -18,7 +18,9 @@ from blocks_planning.settings import Configured, setting
 
 MAX_DEPTH = 64
 MAX_ITERATIONS = 1_000_000
+MAX_WIDTH = 1_000_000
 DIVISORS = ('smallest', 'mean', 'largest')
+DEAD_ENDS = ('worst', 'ignored')
 EXECUTIONS = ('first', 'path')
 
 
@@ -36,37 +38,72 @@ class Search(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class RandomPlacement(Configured):
-    """A legal placement, uniformly, until none is left. Cost 0."""
+class Compiled(Configured):
+    """Base of the searches whose attempts are compiled: they differ in their memory."""
 
-    name: ClassVar[str] = 'random'
+    def memory(self, task: Task, tables: Any, most_left: int, growth: int) -> Any:
+        """The memory of the search for problems of a task; its type says which search it is.
+
+        Args:
+            task: the task.
+            tables: of the task.
+            most_left: most cells that are to be filled.
+            growth: how often it has been too small; see :mod:`.memory`.
+
+        Raises:
+            LimitExceeded: if it would be too large.
+        """
+        raise NotImplementedError
 
     def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
         """See :class:`Search`."""
         from blocks_planning.search import compiled
 
-        return compiled.solve_at_random(problem, seed, budget, cancel)
+        return compiled.solve_one(problem, self.memory, seed, budget, cancel)
 
 
 @dataclass(frozen=True)
-class BreadthFirst(Configured):
+class RandomPlacement(Compiled):
+    """A legal placement, uniformly, until none is left. Cost 0."""
+
+    name: ClassVar[str] = 'random'
+
+    def memory(self, task: Task, tables: Any, most_left: int, growth: int) -> Any:
+        """See :class:`Compiled`."""
+        from blocks_planning.search import memory
+
+        return memory.at_random(tables)
+
+
+@dataclass(frozen=True)
+class BreadthFirst(Compiled):
     """Breadth-first lookahead of ``depth`` placements (paper, section "Action-level planning").
 
     It executes the first placement towards the best state seen, uniformly among equals, and
-    looks again; a complete state that is taken up for expansion is built whole.
+    looks again; a complete state that is taken up for expansion is built whole. More filled cells
+    are better. A state without a legal placement is 'worst' of all (the published numbers), which
+    takes a look one level beyond ``depth`` that is not counted; or such dead ends are 'ignored',
+    so that the filled cells alone decide (the paper's text).
     """
 
     name: ClassVar[str] = 'bfs'
     depth: int = setting(
         3, 'Placements that the search looks ahead.', least=1, most=MAX_DEPTH, unit='placements'
     )
+    dead_ends: str = setting(
+        'worst', 'How a state without a legal placement is ranked.', choices=DEAD_ENDS
+    )
 
-    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
-        """See :class:`Search`."""
-        from blocks_planning.search import compiled
+    @property
+    def dead_ends_last(self) -> bool:
+        """Whether a state without a legal placement ranks below all others."""
+        return self.dead_ends == 'worst'
 
-        return compiled.solve_breadth_first(problem, self.depth, seed, budget, cancel)
+    def memory(self, task: Task, tables: Any, most_left: int, growth: int) -> Any:
+        """See :class:`Compiled`."""
+        from blocks_planning.search import memory
+
+        return memory.breadth_first(tables, self.depth, self.dead_ends_last)
 
 
 def _iterations() -> Any:
@@ -86,7 +123,7 @@ def _execute() -> Any:
 
 
 @dataclass(frozen=True)
-class AStar(Configured):
+class AStar(Compiled):
     """A* for some iterations; f = blocks placed + cells left / divisor.
 
     The divisor is the 'smallest' block area (the paper's text), the 'mean' (its published numbers)
@@ -111,37 +148,94 @@ class AStar(Configured):
         kinds = {'smallest': min(areas), 'mean': sum(areas) / len(areas), 'largest': max(areas)}
         return float(kinds[self.divisor])
 
-    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
-        """See :class:`Search`."""
-        from blocks_planning.search import compiled
+    def memory(self, task: Task, tables: Any, most_left: int, growth: int) -> Any:
+        """See :class:`Compiled`."""
+        from blocks_planning.search import memory
 
-        return compiled.solve_best_first(
-            problem,
-            self.iterations,
-            1,
-            self.divisor_of(problem.task),
-            self.execute == 'path',
-            seed,
-            budget,
-            cancel,
-        )
+        whole_path = self.execute == 'path'
+        divisor = self.divisor_of(task)
+        return memory.queue(tables, most_left, growth, self.iterations, 1, divisor, whole_path)
 
 
 @dataclass(frozen=True)
-class BestFirst(Configured):
+class BestFirst(Compiled):
     """A* with the blocks placed left out: the fewest cells left come first."""
 
     name: ClassVar[str] = 'best_first'
     iterations: int = _iterations()
     execute: str = _execute()
 
-    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
-        """See :class:`Search`."""
-        from blocks_planning.search import compiled
+    def memory(self, task: Task, tables: Any, most_left: int, growth: int) -> Any:
+        """See :class:`Compiled`."""
+        from blocks_planning.search import memory
 
-        return compiled.solve_best_first(
-            problem, self.iterations, 0, 1.0, self.execute == 'path', seed, budget, cancel
-        )
+        whole_path = self.execute == 'path'
+        return memory.queue(tables, most_left, growth, self.iterations, 0, 1.0, whole_path)
+
+
+@dataclass(frozen=True)
+class Beam(Compiled):
+    """Beam search: level by level, the ``width`` states with most cells filled are kept.
+
+    One search is an attempt. It begins with the state at hand. On each level it generates and
+    counts every child of every state kept, in the order in which those were generated. It keeps
+    the ``width`` children with most filled cells; of those that tie for the last places it keeps
+    some uniformly drawn ones. Two orders of the same blocks are two states. It stops after a level
+    with a complete state, or if no state kept has a legal placement. The result is the path to the
+    kept state with most filled cells of all levels, uniformly among equals, and is executed whole;
+    if that is not complete, nothing legal is left in it.
+
+    Draws: on each level where not all equals can be kept, one for each of them in the order of
+    generation until as many are kept as there are places, keeping it if a number below those left
+    is below the places left; at the end one for the best state.
+    """
+
+    name: ClassVar[str] = 'beam'
+    width: int = setting(100, 'States kept on each level.', least=1, most=MAX_WIDTH, unit='states')
+
+    def memory(self, task: Task, tables: Any, most_left: int, growth: int) -> Any:
+        """See :class:`Compiled`."""
+        from blocks_planning.search import memory
+
+        return memory.kept_states(tables, most_left, growth, self.width)
+
+
+@dataclass(frozen=True)
+class TreeSearch(Compiled):
+    """Monte Carlo tree search with upper confidence bounds (UCT; Kocsis and Szepesvari, 2006).
+
+    Each iteration walks from the root down the tree. At a state of which some legal placement is
+    not in the tree, it adds one of those, uniformly drawn, and from the state that follows it
+    places legal blocks, uniformly, until nothing legal is left. At a state of which all are in the
+    tree, it goes to the child with the highest W / n + exploration * sqrt(ln N / n), uniformly
+    among equals: W is the sum of the rewards of the child's n visits, and N the number of visits
+    of the state. At a state without a legal placement the iteration ends. The reward is the share
+    of the region's cells that is filled at its end, 1 if complete, and counts for every state on
+    its way in the tree.
+
+    After all iterations the most visited first placement is executed, uniformly among equals, and
+    a new search begins, with a new tree. A complete state does not end a search: it is one more
+    reward. So an attempt makes one search for every block it places.
+
+    States evaluated are those added to the tree and those of the placements that follow, in every
+    iteration. Draws: one for each choice named above, even among one.
+    """
+
+    name: ClassVar[str] = 'mcts'
+    iterations: int = setting(
+        1000,
+        'Walks through the tree before a placement.',
+        least=1,
+        most=MAX_ITERATIONS,
+        unit='iterations',
+    )
+    exploration: float = setting(0.5, 'Weight of trying what was tried less.', least=0, most=1000)
+
+    def memory(self, task: Task, tables: Any, most_left: int, growth: int) -> Any:
+        """See :class:`Compiled`."""
+        from blocks_planning.search import memory
+
+        return memory.tree(tables, growth, self.iterations, self.exploration)
 
 
 @dataclass(frozen=True)
@@ -167,7 +261,7 @@ class Exact(Configured):
 SEARCHES = Registry(
     'search',
     'blocks_planning.searches',
-    (BreadthFirst, AStar, BestFirst, RandomPlacement, Exact),
+    (BreadthFirst, AStar, BestFirst, Beam, TreeSearch, RandomPlacement, Exact),
 )
 
 

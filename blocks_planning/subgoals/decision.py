@@ -1,14 +1,14 @@
-"""What a subgoal planner asks and answers.
+"""What a subgoal planner is asked, and what it answers.
 
-A planner is a pure function of what it knows. Asked for a decision, it answers either with the
-:class:`Query` tuples whose results it still lacks, or with a :class:`Decision`. Whoever drives it
-has the queries solved, in any order and anywhere, and asks again with more known. So nothing is
-lost when a planner, or a searcher, dies in between.
+A planner is a pure function of its :class:`Situation`. It answers with the :class:`Query` tuples
+whose results it still lacks, or with a :class:`Decision`. The caller has the queries solved, in any
+order and in any process, and asks again with more known. So a planner or a searcher that is
+restarted loses nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Protocol, TypeAlias
 
@@ -17,53 +17,86 @@ from blocks_planning.board.geometry import Mask
 from blocks_planning.board.task import Task
 from blocks_planning.search.result import SolveResult, SolveStatus
 from blocks_planning.subgoals.proposals import Proposal
+from blocks_planning.subgoals.regions import Region
 
 
 class Query(NamedTuple):
-    """Can ``region`` be filled from the state ``built``, and what does finding out cost?"""
+    """Can exactly ``target`` be filled from the state ``built``, and at what cost?"""
 
     built: Mask
-    region: Mask
+    target: Mask
 
 
 Known: TypeAlias = Mapping[Query, SolveResult]
+Chain: TypeAlias = tuple[Region, ...]
+"""Regions to fill one after the other."""
+
+
+@dataclass(frozen=True)
+class Situation:
+    """All that a decision depends on.
+
+    Attributes:
+        task: what to build.
+        built: the filled cells; the silhouette is not complete.
+        seed: of the trial, for tie-breaking.
+        known: answered queries.
+        proposals: of a person in this state, in order; empty unless the strategy asks a person.
+        blocks: the blocks that stand, in the order in which they landed.
+        decisions: number of decisions made earlier in the trial.
+    """
+
+    task: Task
+    built: Mask
+    seed: int
+    known: Known
+    proposals: tuple[Proposal, ...] = ()
+    blocks: tuple[Placed, ...] = ()
+    decisions: int = 0
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A sequence of subgoals that was considered (of one subgoal, when scoping).
+    """A chain of regions that was considered (of one region, when scoping looks one ahead).
 
     Attributes:
-        heights: of its regions, rising; none for a region of another shape.
+        regions: of the chain, in order.
         cells: r, the cells that it would add.
         planning_cost: c [states], up to and including its first unsolved subgoal.
-        value: V = r - lambda * c; None if a subgoal is unsolved, or nothing is weighed.
+        value: V = r - lambda * c; None if a subgoal is unsolved, or values play no part.
         status: of its first unsolved subgoal, or solved.
+        probability: of being chosen; None if the choice is not by probability.
     """
 
-    heights: tuple[int, ...]
+    regions: Chain
     cells: int
     planning_cost: int
     value: float | None
     status: SolveStatus
+    probability: float | None = None
+
+    @property
+    def is_solved(self) -> bool:
+        """Whether every subgoal of the chain is solved."""
+        return self.status is SolveStatus.SOLVED
 
 
 @dataclass(frozen=True)
 class Subgoal:
-    """A region to fill next, and what its solve gave.
+    """A region to fill next, and the result of its solve.
 
     Attributes:
-        height: the region is the target rows below it; None for a region of another shape.
-        region: its cells, together with what is built already.
-        execute: how many of the placements to carry out before anything is decided anew.
+        region: which cells to fill, and how they were chosen.
+        target: all cells that are filled when the subgoal is reached.
+        execute: number of placements to carry out before the next decision.
         placements: the whole plan that fills the region.
         planning_cost: of its solve [states].
         solution_cost: of the attempt that succeeded [states].
         attempts: of its solve.
     """
 
-    height: int | None
-    region: Mask
+    region: Region
+    target: Mask
     execute: int
     placements: tuple[Placed, ...]
     planning_cost: int
@@ -77,10 +110,12 @@ class Decision:
 
     Attributes:
         built: the state.
-        candidates: all that was considered, in the order in which ties are drawn.
-        chosen: index of the winner; None if no candidate is solved, and the planner gives up.
-        subgoals: what to execute, one after the other; none if it gives up.
-        subgoal_planning_cost: what considering everything cost [states].
+        candidates: every chain that was considered, in the order in which ties are drawn.
+        chosen: index of the chosen candidate; None if no candidate is solved and the planner
+            gives up.
+        subgoals: to execute, one after the other; empty if the planner gives up.
+        subgoal_planning_cost: of considering all candidates [states].
+        sequences: number of chains that exist; more than the candidates if they are a sample.
     """
 
     built: Mask
@@ -88,44 +123,66 @@ class Decision:
     chosen: int | None
     subgoals: tuple[Subgoal, ...]
     subgoal_planning_cost: int
+    sequences: int
 
 
 class Strategy(Protocol):
-    """A subgoal planner; its fields are its settings."""
+    """A subgoal planner; its fields are its settings.
+
+    Attributes:
+        asks_person: whether a person's proposals are its candidates.
+    """
 
     name: ClassVar[str]
     asks_person: ClassVar[bool]
 
-    def decide(
-        self,
-        task: Task,
-        built: Mask,
-        seed: int,
-        known: Known,
-        proposals: tuple[Proposal, ...] = (),
-    ) -> list[Query] | Decision:
-        """Decide in a state that is not complete, or say which queries are still unanswered.
+    @property
+    def is_blind(self) -> bool:
+        """Whether a plan is carried out to its end, whatever is observed meanwhile."""
+        ...
 
-        Args:
-            task: what to build.
-            built: the state.
-            seed: of every tie.
-            known: answered queries.
-            proposals: what a person has proposed in this state; only a person's strategy looks.
+    @property
+    def hides_costs(self) -> bool:
+        """Whether planning costs must not be shown while a trial runs."""
+        ...
+
+    def decide(self, situation: Situation) -> list[Query] | Decision:
+        """Decide, or list the queries that must be answered first.
+
+        An empty list asks for another proposal of a person.
         """
         ...
 
+    def chains(self, situation: Situation) -> Sequence[Chain]:
+        """The chains of a decision's candidates, in order. Asks nothing of ``known``."""
+        ...
 
-def subgoal_of(
-    height: int | None, query: Query, result: SolveResult, execute: int | None = None
-) -> Subgoal:
-    """The subgoal of a solved query; all of its plan is executed unless ``execute`` says less."""
-    return Subgoal(
-        height=height,
-        region=query.region,
-        execute=len(result.placements) if execute is None else execute,
-        placements=result.placements,
-        planning_cost=result.planning_cost,
-        solution_cost=result.solution_cost,
-        attempts=result.attempts,
-    )
+    def sequences(self, situation: Situation) -> int:
+        """Number of chains that exist; more than :meth:`chains` lists if those are a sample."""
+        ...
+
+    def rated(
+        self, candidates: Sequence[Candidate], situation: Situation
+    ) -> tuple[Candidate, ...]:
+        """The candidates with the probabilities of being chosen, if the choice is by those."""
+        ...
+
+    def value(self, cells: int, planning_cost: int) -> float | None:
+        """V of a solved chain [cells]; None if values play no part."""
+        ...
+
+    def choose(self, candidates: Sequence[Candidate], situation: Situation) -> int | None:
+        """Index of the candidate to execute; None to give up."""
+        ...
+
+    def subgoals_of(self, chain: Chain) -> Chain:
+        """The regions of the chosen chain that are executed before the next decision."""
+        ...
+
+    def execute(self, plan: int) -> int:
+        """Number of placements executed of a subgoal's plan of ``plan`` placements."""
+        ...
+
+    def considered(self, candidates: Sequence[Candidate]) -> int:
+        """The subgoal planning cost of a decision with these candidates [states]."""
+        ...

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from blocks_planning.board.geometry import Mask, area
-from blocks_planning.board.task import Task
-from blocks_planning.settings import Configured, setting
-from blocks_planning.subgoals.decision import Candidate, Decision, Known, Query, subgoal_of
-from blocks_planning.subgoals.proposals import Proposal, ProposalKind, decisive, target_of
-from blocks_planning.subgoals.regions import height_of
+from blocks_planning.settings import setting
+from blocks_planning.subgoals.decision import Candidate, Chain, Decision, Query, Situation
+from blocks_planning.subgoals.planner import Planner, first_solved, queries_along
+from blocks_planning.subgoals.proposals import Proposal, ProposalKind, decisive
+from blocks_planning.subgoals.regions import drawn_region
 
 COSTS = ('shown', 'hidden')
 
 
 @dataclass(frozen=True)
-class Human(Configured):
+class Human(Planner):
     """Regions of any shape, proposed by a person one after the other until one can be built."""
 
     name: ClassVar[str] = 'human'
@@ -29,44 +29,49 @@ class Human(Configured):
     )
     costs: str = setting('shown', 'Whether the person sees the planning costs.', choices=COSTS)
 
-    def decide(
-        self,
-        task: Task,
-        built: Mask,
-        seed: int,
-        known: Known,
-        proposals: tuple[Proposal, ...] = (),
-    ) -> list[Query] | Decision:
-        """See :class:`Strategy`. No query and no decision: it is the person's turn."""
-        candidates: list[Candidate] = []
-        for proposal in decisive(task, built, proposals):
-            considered = sum(candidate.planning_cost for candidate in candidates)
-            if proposal.kind is ProposalKind.GIVE_UP:
-                return Decision(built, tuple(candidates), None, (), considered)
-            query = Query(built, target_of(task, built, proposal.region))
-            if query not in known:
+    @property
+    def hides_costs(self) -> bool:
+        """Whether the person must not see planning costs."""
+        return self.costs == 'hidden'
+
+    def chains(self, situation: Situation) -> Sequence[Chain]:
+        """The proposed regions, each alone."""
+        task, built = situation.task, situation.built
+        return [
+            (drawn_region(task, built, proposal.region),)
+            for proposal in decisive(task, built, situation.proposals)
+            if proposal.kind is ProposalKind.BUILD
+        ]
+
+    def value(self, cells: int, planning_cost: int) -> float | None:
+        """No value: the person weighs."""
+        return None
+
+    def choose(self, candidates: Sequence[Candidate], situation: Situation) -> int | None:
+        """The first proposal that can be built."""
+        return first_solved(candidates)
+
+    def decide(self, situation: Situation) -> list[Query] | Decision:
+        """See :class:`Strategy`. Proposals are solved one by one, up to the first that can be."""
+        chains: list[Chain] = []
+        for chain in self.chains(situation):
+            (query,) = queries_along(chain, situation.built)
+            if query not in situation.known:
                 return [query]
-            result = known[query]
-            height = height_of(task, query.region)
-            cost = result.planning_cost
-            candidates.append(
-                Candidate(
-                    heights=() if height is None else (height,),
-                    cells=area(query.region) - area(built),
-                    planning_cost=cost,
-                    value=None,
-                    status=result.status,
-                )
-            )
-            if result.solved:
-                subgoal = subgoal_of(height, query, result)
-                chosen = len(candidates) - 1
-                return Decision(built, tuple(candidates), chosen, (subgoal,), considered + cost)
-        return []
+            chains.append(chain)
+            if situation.known[query].solved:
+                return self._decided(chains, situation)
+        gives_up = any(p.kind is ProposalKind.GIVE_UP for p in situation.proposals)
+        return self._decided(chains, situation) if gives_up else []
+
+    def _decided(self, chains: list[Chain], situation: Situation) -> Decision:
+        weighed = [self._weigh(chain, situation) for chain in chains]
+        candidates = tuple(one for one in weighed if isinstance(one, Candidate))
+        return replace(self.decision(candidates, situation), sequences=len(candidates))
 
 
-def used(task: Task, decision: Decision, proposals: tuple[Proposal, ...]) -> tuple[Proposal, ...]:
+def used(situation: Situation, decision: Decision) -> tuple[Proposal, ...]:
     """The proposals of a state that led to a decision: up to the one that decided."""
-    asking = list(decisive(task, decision.built, proposals))
+    asking = list(decisive(situation.task, decision.built, situation.proposals))
     last = asking[len(decision.candidates) - (decision.chosen is not None)]
-    return proposals[: last.number + 1]
+    return situation.proposals[: last.number + 1]

@@ -2,44 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from blocks_planning.board.geometry import Mask, area
-from blocks_planning.board.task import Task
-from blocks_planning.settings import Configured
-from blocks_planning.subgoals.decision import Candidate, Decision, Known, Query, subgoal_of
-from blocks_planning.subgoals.proposals import Proposal
-from blocks_planning.subgoals.regions import regions_above
+from blocks_planning.subgoals.aiming import aim_setting, regions_to_aim_at
+from blocks_planning.subgoals.decision import Candidate, Chain, Situation
+from blocks_planning.subgoals.planner import Planner, first_solved
+from blocks_planning.subgoals.regions import Rows
 
 
 @dataclass(frozen=True)
-class NoSubgoals(Configured):
+class NoSubgoals(Planner):
     """Action-level search for the whole tower (paper, "no subgoal planning")."""
 
     name: ClassVar[str] = 'none'
-    asks_person: ClassVar[bool] = False
+    aim: str = aim_setting()
 
-    def decide(
-        self,
-        task: Task,
-        built: Mask,
-        seed: int,
-        known: Known,
-        proposals: tuple[Proposal, ...] = (),
-    ) -> list[Query] | Decision:
-        """See :class:`Strategy`. Nothing is weighed, and considering costs nothing."""
-        regions = regions_above(task, built)[-1:]
-        if not regions:
-            return Decision(built, (), None, (), 0)
-        height, whole = regions[0]
-        query = Query(built, whole)
-        if query not in known:
-            return [query]
-        result = known[query]
-        candidate = Candidate(
-            (height,), area(whole) - area(built), result.planning_cost, None, result.status
-        )
-        if not result.solved:
-            return Decision(built, (candidate,), None, (), 0)
-        return Decision(built, (candidate,), 0, (subgoal_of(height, query, result),), 0)
+    def chains(self, situation: Situation) -> Sequence[Chain]:
+        """The whole silhouette."""
+        regions = regions_to_aim_at(Rows(), situation, self.aim)
+        return [(region,) for region in regions[-1:]]
+
+    def value(self, cells: int, planning_cost: int) -> float | None:
+        """No value: there is nothing to weigh."""
+        return None
+
+    def choose(self, candidates: Sequence[Candidate], situation: Situation) -> int | None:
+        """The one candidate, if it is solved."""
+        return first_solved(candidates)
+
+    def considered(self, candidates: Sequence[Candidate]) -> int:
+        """0: the solve is action planning."""
+        return 0

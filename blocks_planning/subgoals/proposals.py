@@ -1,9 +1,9 @@
-"""What a person says while scoping: regions to build, regions let go, and giving up."""
+"""What a person proposes while scoping: regions to build, regions withdrawn, and giving up."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -11,27 +11,30 @@ from blocks_planning.board.geometry import Mask
 from blocks_planning.board.task import Task
 from blocks_planning.errors import ConfigurationError
 
+MOST_PROPOSALS = 1000
+"""Largest number of proposals in one state, so that memory stays bounded."""
+
 
 class ProposalKind(str, Enum):
-    """What is to become of a region."""
+    """What a proposal asks for."""
 
     BUILD = 'build'
-    """Search for a way to fill it, and build it."""
+    """Search for a way to fill the region, and build it."""
     WITHDRAWN = 'withdrawn'
-    """It was looked at and let go."""
+    """The region was drawn and withdrawn; nothing happens."""
     GIVE_UP = 'give_up'
     """End the trial; the region means nothing."""
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """A person's word on what to build next.
+    """What a person proposes to build next.
 
     Attributes:
-        sequence: number of blocks placed when it was made.
+        sequence: of the observation in whose state it was made.
         number: counts the proposals made in that state, from 0.
-        kind: what is to become of the region.
-        region: where to build, as it was drawn; see :func:`target_of`.
+        kind: what it asks for.
+        region: the cells, as they were drawn; see :func:`target_of`.
         thinking_s: from seeing the state, or the answer to the last proposal, to this one [s].
 
     Raises:
@@ -59,17 +62,39 @@ def target_of(task: Task, built: Mask, region: Mask) -> Mask:
     return built | (region & task.silhouette)
 
 
+def is_filled(task: Task, built: Mask, region: Mask) -> bool:
+    """Whether no target cell of a drawn region is still empty."""
+    return target_of(task, built, region) == built
+
+
 def proposed_at(proposals: Iterable[Proposal], sequence: int) -> tuple[Proposal, ...]:
-    """The proposals that were made after so many placements."""
+    """The proposals that were made in the state of an observation."""
     return tuple(proposal for proposal in proposals if proposal.sequence == sequence)
 
 
 def decisive(task: Task, built: Mask, proposals: Iterable[Proposal]) -> Iterator[Proposal]:
-    """Those proposals of a state that ask for something: to build what can be, or to give up."""
+    """The proposals of a state that lead to something: regions with empty cells, and giving up."""
     for proposal in proposals:
         match proposal.kind:
             case ProposalKind.GIVE_UP:
                 yield proposal
                 return
-            case ProposalKind.BUILD if target_of(task, built, proposal.region) != built:
+            case ProposalKind.BUILD if not is_filled(task, built, proposal.region):
                 yield proposal
+
+
+def out_of_turn(taken: Sequence[Proposal], proposal: Proposal) -> str:
+    """Why a proposal is not the next one after those taken in its state; '' if it is."""
+    expected = len(proposed_at(taken, proposal.sequence))
+    if expected >= MOST_PROPOSALS:
+        return f'number: a state takes at most {MOST_PROPOSALS} proposals'
+    if proposal.number != expected:
+        return f'number: expected {expected}, got {proposal.number}'
+    return ''
+
+
+def asks_nothing(task: Task, built: Mask, proposal: Proposal) -> str:
+    """Why a proposal has no effect in a state; '' if it has one, or is withdrawn."""
+    if proposal.kind is ProposalKind.BUILD and is_filled(task, built, proposal.region):
+        return 'region: expected a target cell that is still empty'
+    return ''

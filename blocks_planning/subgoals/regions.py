@@ -1,37 +1,128 @@
-"""Subgoals as regions of space: the target rows below a height (paper, section "Subgoals")."""
+"""Regions: parts of the silhouette to fill next, each with a label that says how it was made.
+
+A region family lists the regions that can come next in a state. The paper's family is ``rows``:
+the target rows below a height (paper, section "Subgoals").
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple, Protocol
 
-from blocks_planning.board.geometry import Mask
+from blocks_planning.board.geometry import MAX_SIDE, Mask
 from blocks_planning.board.task import Task
+from blocks_planning.families import Registry
+from blocks_planning.settings import Configured, setting
+from blocks_planning.subgoals.rectangles import rectangles
+
+MAX_CELLS = MAX_SIDE * MAX_SIDE
+
+
+class Label(NamedTuple):
+    """How a region was made, as data.
+
+    >>> str(Label('rows', (4,)))
+    'rows 4'
+    >>> str(Label('rectangle', (0, 2, 3, 1)))
+    'rectangle 0,2,3,1'
+    >>> str(Label('drawn'))
+    'drawn'
+    """
+
+    kind: str
+    numbers: tuple[int, ...] = ()
+
+    def __str__(self) -> str:
+        return ' '.join([self.kind, *filter(None, [','.join(map(str, self.numbers))])])
 
 
 class Region(NamedTuple):
-    """The target cells of the rows below a height: ``rows(height)``."""
+    """Target cells to fill, and how they were chosen. Some of the cells may be filled already."""
 
-    height: int
+    label: Label
     cells: Mask
 
+    def target(self, built: Mask) -> Mask:
+        """The cells that stand when the region is filled from a state."""
+        return built | self.cells
 
-def regions_above(task: Task, built: Mask) -> list[Region]:
-    """The different regions that strictly contain what is built, the lowest first.
 
-    Of heights with the same region the lowest stands for all. The last region is the whole
-    silhouette, unless that does not strictly contain what is built: then there is none.
-    """
-    regions: list[Region] = []
-    previous = 0
+class RegionFamily(Protocol):
+    """A way to divide the silhouette into regions."""
+
+    name: ClassVar[str]
+
+    def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
+        """The regions that can come next in a state, in the order in which ties are drawn.
+
+        Each adds at least one cell to the state. No two of them have the same target.
+
+        Args:
+            task: the silhouette, of which every cell that is not built can still be filled.
+            built: the filled cells.
+            partial: whether a region may leave out cells that are built.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Rows(Configured):
+    """The target rows below a height (paper, section "Subgoals")."""
+
+    name: ClassVar[str] = 'rows'
+
+    def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
+        """The different regions that strictly contain the state, the lowest first.
+
+        Of several heights with the same region the lowest is listed. The last region is the whole
+        silhouette, unless the state has a cell outside it: then there is none. With ``partial``
+        every height counts below which the state lacks a cell.
+        """
+        regions: list[Region] = []
+        listed = built
+        for height in range(1, task.board.height + 1):
+            cells = task.rows(height)
+            target = built | cells
+            if target != listed and (partial or target == cells):
+                regions.append(Region(rows_label(height), cells))
+                listed = target
+        return regions
+
+
+@dataclass(frozen=True)
+class Rectangles(Configured):
+    """The target cells inside a rectangle; see :mod:`.rectangles` for which ones count."""
+
+    name: ClassVar[str] = 'rectangles'
+    min_cells: int = setting(
+        2, 'Fewest target cells of a rectangle.', least=1, most=MAX_CELLS, unit='cells'
+    )
+    max_cells: int = setting(
+        0,
+        'Most target cells of a rectangle; 0: three quarters of the silhouette.',
+        least=0,
+        most=MAX_CELLS,
+        unit='cells',
+    )
+
+    def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
+        """See :class:`RegionFamily`. By rising row, column, height and width."""
+        found = rectangles(task, built, self.min_cells, self.max_cells)
+        return [Region(Label(*label), cells) for label, cells in found]
+
+
+REGIONS = Registry('regions', 'blocks_planning.regions', (Rows, Rectangles))
+
+
+def rows_label(height: int) -> Label:
+    """The label of the target rows below a height."""
+    return Label(Rows.name, (height,))
+
+
+def drawn_region(task: Task, built: Mask, cells: Mask) -> Region:
+    """The region that a person drew: its target cells, labelled as rows where it is just those."""
+    target = built | (cells & task.silhouette)
     for height in range(1, task.board.height + 1):
-        cells = task.rows(height)
-        if cells != previous and cells != built and not built & ~cells:
-            regions.append(Region(height, cells))
-        previous = cells
-    return regions
-
-
-def height_of(task: Task, region: Mask) -> int | None:
-    """The lowest height below which the target rows are a region; None for another shape."""
-    heights = range(1, task.board.height + 1)
-    return next((height for height in heights if task.rows(height) == region), None)
+        if task.rows(height) == target:
+            return Region(rows_label(height), target)
+    return Region(Label('drawn'), cells & task.silhouette)

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from blocks_planning.board.geometry import Mask, area
-from blocks_planning.board.task import Task
-from blocks_planning.settings import Configured, setting
-from blocks_planning.subgoals.choosing import best, value_of
-from blocks_planning.subgoals.decision import Candidate, Decision, Known, Query, subgoal_of
-from blocks_planning.subgoals.proposals import Proposal
-from blocks_planning.subgoals.regions import regions_above
+from blocks_planning.settings import member, setting
+from blocks_planning.subgoals.aiming import aim_setting, regions_to_aim_at
+from blocks_planning.subgoals.decision import Chain, Situation
+from blocks_planning.subgoals.planner import Planner, value_of
+from blocks_planning.subgoals.regions import REGIONS, RegionFamily
 
 COMMITS = ('subgoal', 'action')
 
 
 @dataclass(frozen=True)
-class Scoping(Configured):
+class Scoping(Planner):
     """One subgoal at a time, the one of highest value (paper, section "Visual scoping").
 
     It executes the whole plan of a 'subgoal' (the paper's text and numbers), or only its first
@@ -25,47 +24,28 @@ class Scoping(Configured):
     """
 
     name: ClassVar[str] = 'scoping'
-    asks_person: ClassVar[bool] = False
     lam: float = setting(
         0.002, 'Cost per evaluated state, in cells.', name='lambda', least=0, unit='cells / state'
     )
     commit: str = setting(
         'subgoal', 'Part of the plan executed before the next decision.', choices=COMMITS
     )
+    aim: str = aim_setting()
+    regions: RegionFamily = member('rows', REGIONS, 'Regions that are considered as subgoals.')
 
-    def decide(
-        self,
-        task: Task,
-        built: Mask,
-        seed: int,
-        known: Known,
-        proposals: tuple[Proposal, ...] = (),
-    ) -> list[Query] | Decision:
-        """See :class:`Strategy`."""
-        regions = regions_above(task, built)
-        queries = [Query(built, region.cells) for region in regions]
-        missing = [query for query in queries if query not in known]
-        if missing:
-            return missing
-        results = [known[query] for query in queries]
-        candidates = tuple(
-            Candidate(
-                heights=(region.height,),
-                cells=(cells := area(region.cells) - area(built)),
-                planning_cost=result.planning_cost,
-                value=value_of(cells, result.planning_cost, self.lam) if result.solved else None,
-                status=result.status,
-            )
-            for region, result in zip(regions, results, strict=True)
-        )
-        considered = sum(result.planning_cost for result in results)
-        chosen = best(candidates, seed, built)
-        if chosen is None:
-            return Decision(built, candidates, None, (), considered)
-        subgoal = subgoal_of(
-            regions[chosen].height,
-            queries[chosen],
-            results[chosen],
-            execute=1 if self.commit == 'action' else None,
-        )
-        return Decision(built, candidates, chosen, (subgoal,), considered)
+    def chains(self, situation: Situation) -> Sequence[Chain]:
+        """Each region alone."""
+        regions = regions_to_aim_at(self.regions, situation, self.aim)
+        return [(region,) for region in regions]
+
+    def value(self, cells: int, planning_cost: int) -> float | None:
+        """V = r - lambda * c [cells]."""
+        return value_of(cells, planning_cost, self.lam)
+
+    def subgoals_of(self, chain: Chain) -> Chain:
+        """The first region; after it, scoping looks again."""
+        return chain[:1]
+
+    def execute(self, plan: int) -> int:
+        """The whole plan, or its first action."""
+        return min(1, plan) if self.commit == 'action' else plan

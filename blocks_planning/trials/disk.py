@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import time
 from pathlib import Path
@@ -15,10 +14,20 @@ _LOOK_S = 0.02
 
 
 def lock(descriptor: int, path: Path, wait_s: float = LOCK_WAIT_S) -> None:
-    """Be the only one to write, until the descriptor is closed or the process ends, however.
+    """Be the only process that writes a file, or in a folder, of a system that can open folders.
+
+    The lock ends when the descriptor is closed or the process ends, for whatever reason. It binds
+    only those that call this function; but under Windows nothing else can read the first 64 KiB
+    of a locked file.
+
+    Args:
+        descriptor: of the file or folder, open.
+        path: of it, for the message.
+        wait_s: how long to wait for another holder of the lock [s].
 
     Raises:
-        RecordError: if somebody else still writes after ``wait_s``.
+        RecordError: if there is still another holder after ``wait_s``.
+        OSError: if the file system has no locks.
     """
     deadline = time.monotonic() + wait_s
     while not _is_locked(descriptor):
@@ -30,10 +39,19 @@ def lock(descriptor: int, path: Path, wait_s: float = LOCK_WAIT_S) -> None:
 
 
 def _is_locked(descriptor: int) -> bool:
+    # Imported here, because most commands import this module and lock nothing.
+    import portalocker
+
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
+        portalocker.lock(
+            descriptor, portalocker.LockFlags.EXCLUSIVE | portalocker.LockFlags.NON_BLOCKING
+        )
+    except portalocker.AlreadyLocked:
         return False
+    except portalocker.LockException as error:
+        if isinstance(error.__cause__, BlockingIOError):  # what releases before 3 say instead
+            return False
+        raise error.__cause__ or error from None
     return True
 
 

@@ -1,28 +1,25 @@
 """A trial without messages: a planner is asked, its plan carried out, and it is asked again.
 
-The record is the one that :func:`blocks_planning.trials.local.run_trial` gives. What is answered
-once can be handed to the next trial of the same task, search, seed and budget, whatever its
-strategy: a solve depends on nothing else.
+The record is the one that :func:`blocks_planning.trials.local.run_trial` gives. An answer can be
+used again in the next trial of the same task, search, seed and budget, whatever its strategy: a
+solve depends on nothing else.
 """
 
 from __future__ import annotations
 
 from collections.abc import MutableMapping
-from functools import lru_cache
 
 from blocks_planning.board import rules
-from blocks_planning.board.blocks import Placed
-from blocks_planning.board.geometry import Mask
+from blocks_planning.board.blocks import Placement
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.search.result import Problem, SolveResult
 from blocks_planning.search.solve import solve
-from blocks_planning.subgoals.decision import Decision, Query, Subgoal
+from blocks_planning.subgoals.decision import Decision, Query, Situation, Subgoal
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
-from blocks_planning.trials.world import status_of
-
-_status_of = lru_cache(maxsize=4096)(status_of)
+from blocks_planning.trials.world import TOO_MANY, status_of
+from blocks_planning.worlds.observation import MAX_OBSERVATIONS, Blocks, Observation, mask_of
 
 
 def follow(spec: TrialSpec, answers: MutableMapping[Query, SolveResult]) -> TrialRecord:
@@ -30,36 +27,104 @@ def follow(spec: TrialSpec, answers: MutableMapping[Query, SolveResult]) -> Tria
 
     Args:
         spec: the trial.
-        answers: what is known already of this task, search, seed and budget; new answers are
-            added. They are counted in the record as if they had been searched for anew.
+        answers: what is known of this task, search, seed and budget; new answers are added. The
+            record counts each as if it had been searched for again.
 
     Raises:
-        ConfigurationError: for a strategy that has to ask a person.
+        ConfigurationError: for a strategy that asks a person, or a world that is observed.
         LimitExceeded: if the search has a limit of size and a problem is over it.
     """
-    built: Mask = 0
-    placements: list[Placed] = []
+    if not spec.world.simulates:
+        raise ConfigurationError(f'world {spec.world.name} cannot be simulated')
+    board = _Board(spec)
     decisions: list[DecisionRecord] = []
-    status = _status_of(spec.task, built)
+    status, reason = board.status(), ''
     while status is TrialStatus.BUILDING:
-        placed, executed = len(placements), 0
-        decision = _decide(spec, built, answers)
+        decision = _decide(spec, board.situation(len(decisions), answers), answers)
+        start, executed = len(board.observations) - 1, 0
         if decision.chosen is None:
             status = TrialStatus.GAVE_UP
         for subgoal in decision.subgoals:
             executed += 1
-            built = _carried_out(spec, built, subgoal)
-            placements += subgoal.placements[: subgoal.execute]
-            status = _status_of(spec.task, built)
-            if status is not TrialStatus.BUILDING or built != subgoal.region:
+            status, goes_on = board.carry_out(subgoal)
+            if status is not TrialStatus.BUILDING or not goes_on:
                 break
-        decisions.append(DecisionRecord(placed, decision, executed))
-    return TrialRecord(spec, status, tuple(placements), tuple(decisions))
+        decisions.append(DecisionRecord(start, decision, executed))
+    if status is TrialStatus.CANCELLED:
+        reason = TOO_MANY
+    observations = tuple(board.observations)
+    return TrialRecord(spec, status, observations, tuple(decisions), reason=reason)
 
 
-def _decide(spec: TrialSpec, built: Mask, answers: MutableMapping[Query, SolveResult]) -> Decision:
+class _Board:
+    """The board of a trial, as its world shows it."""
+
+    def __init__(self, spec: TrialSpec) -> None:
+        self._spec = spec
+        self.observations = [Observation(landed=spec.built)]
+        self._blocks = spec.built
+        self._built = mask_of(spec.task.board, spec.built)
+
+    def status(self) -> TrialStatus:
+        """How the board stands; cancelled if there may be no more observations."""
+        found = status_of(self._spec, self._blocks, self._built)
+        is_full = len(self.observations) >= MAX_OBSERVATIONS
+        if found is TrialStatus.BUILDING and is_full:
+            return TrialStatus.CANCELLED
+        return found
+
+    def situation(self, decisions: int, known: MutableMapping[Query, SolveResult]) -> Situation:
+        """What the planner decides on."""
+        return Situation(
+            task=self._spec.task,
+            built=self._built,
+            seed=self._spec.seed,
+            known=known,
+            blocks=self._blocks,
+            decisions=decisions,
+        )
+
+    def carry_out(self, subgoal: Subgoal) -> tuple[TrialStatus, bool]:
+        """Execute a subgoal; return how the board stands, and whether the next one may follow."""
+        spec = self._spec
+        plan = subgoal.placements[: subgoal.execute]
+        if spec.world.obeys:
+            self._see([Observation(placed.placement, (placed,)) for placed in plan], plan)
+            return self.status(), self._built == subgoal.target
+        for placed in plan:
+            if rules.drop(spec.task.board, self._built, placed.placement) is None:
+                return self.status(), False  # only a blind plan comes to this
+            before = self._built
+            status = TrialStatus.BUILDING
+            while self._built == before and status is TrialStatus.BUILDING:
+                status = self._order(placed.placement)
+            if status is not TrialStatus.BUILDING:
+                return status, False
+            expected = before | rules.cells_of(spec.task.board, placed)
+            if self._built != expected and not spec.strategy.is_blind:
+                return status, False
+        return self.status(), self._built == subgoal.target or spec.strategy.is_blind
+
+    def _order(self, placement: Placement) -> TrialStatus:
+        """Give one order; a lost block changes nothing, and is ordered again."""
+        spec = self._spec
+        seen = spec.world.carry_out(
+            spec.task, self._built, placement, spec.seed, len(self.observations)
+        )
+        self._see([seen], seen.landed)
+        return self.status()
+
+    def _see(self, observations: list[Observation], landed: Blocks) -> None:
+        self.observations += observations
+        self._blocks += landed
+        self._built |= mask_of(self._spec.task.board, landed)
+
+
+def _decide(
+    spec: TrialSpec, situation: Situation, answers: MutableMapping[Query, SolveResult]
+) -> Decision:
     while True:
-        answer = spec.strategy.decide(spec.task, built, spec.seed, answers)
+        answer = spec.strategy.decide(situation)
         if isinstance(answer, Decision):
             return answer
         if not answer:
@@ -67,11 +132,3 @@ def _decide(spec: TrialSpec, built: Mask, answers: MutableMapping[Query, SolveRe
         for query in answer:
             problem = Problem(spec.task, *query)
             answers[query] = solve(problem, spec.search, spec.seed, spec.budget)
-
-
-def _carried_out(spec: TrialSpec, built: Mask, subgoal: Subgoal) -> Mask:
-    """The state after as much of a subgoal's plan as is to be executed."""
-    if subgoal.execute == len(subgoal.placements):
-        return subgoal.region
-    plan = subgoal.placements[: subgoal.execute]
-    return rules.states_along(spec.task.board, built, plan)[-1]

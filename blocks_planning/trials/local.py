@@ -8,7 +8,6 @@ from typing import Any
 
 from blocks_planning.search.result import CancelToken, Problem, SolveStatus
 from blocks_planning.search.solve import solve
-from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials import scribe, searcher, selector, world
 from blocks_planning.trials.messages import (
@@ -38,14 +37,14 @@ def run_trial(
         spec: the trial.
         cancel: ends it, from another thread, with status ``cancelled``.
         observe: is shown every message, before the parts are; the trial goes on when it returns.
-        proposals: what a person says, one whenever it is the person's turn. A trial that waits
-            for more than there are ends with status ``cancelled``.
+        proposals: of a person, one for each turn. A trial that waits for more than there are
+            ends with status ``cancelled``.
     """
     cancel = cancel or CancelToken()
     memories: list[Any] = [part.Memory() for part in _PARTS]
     messages: deque[Message] = deque([TrialStarted(spec.trial_id, spec)])
     cancelling = False
-    said_by_person = iter(proposals)
+    proposed = iter(proposals)
     while messages:
         message = messages.popleft()
         if observe is not None:
@@ -58,8 +57,8 @@ def run_trial(
         if cancel.cancelled and not cancelling:
             cancelling = True
             messages = deque([CancelTrial(spec.trial_id)])
-        if not messages and isinstance(spec.strategy, Human) and _is_building(memories[-1]):
-            messages.append(_next_word(spec.trial_id, said_by_person))
+        if not messages and spec.strategy.asks_person and _is_building(memories[-1]):
+            messages.append(_next_proposal(spec.trial_id, proposed))
     record: TrialRecord = memories[-1].record()
     return record
 
@@ -68,7 +67,7 @@ def _is_building(memory: scribe.Memory) -> bool:
     return memory.trial is not None and memory.status is TrialStatus.BUILDING
 
 
-def _next_word(trial_id: str, proposals: Iterator[Proposal]) -> Message:
+def _next_proposal(trial_id: str, proposals: Iterator[Proposal]) -> Message:
     proposal = next(proposals, None)
     return CancelTrial(trial_id) if proposal is None else ProposalMade(trial_id, proposal)
 

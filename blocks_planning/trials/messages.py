@@ -8,24 +8,26 @@ There are four parts, each a pure function ``step(memory, message) -> (memory, m
 * :mod:`.scribe` owns which trial runs and writes down what happened.
 
 ``Message`` lists everything that can be said. Every message carries the trial it belongs to and,
-where it refers to a state, that state's sequence number; a part ignores what is stale, doubled or
-foreign. :mod:`.local` carries the messages inside one process.
+where it refers to a state, that state's sequence number. A part ignores what is stale, repeated or
+of another trial. :mod:`.local` carries the messages inside one process.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import TypeAlias
 
-from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placed, Placement
 from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.search.result import SolveResult
-from blocks_planning.subgoals.decision import Decision, Query, Subgoal
+from blocks_planning.subgoals.decision import Query
 from blocks_planning.subgoals.proposals import Proposal
-from blocks_planning.trials.record import DecisionRecord
+from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
+from blocks_planning.worlds.observation import Blocks, Observations, mask_of, standing
 
 
 @dataclass(frozen=True)
@@ -38,26 +40,47 @@ class TrialStarted:
 
 @dataclass(frozen=True)
 class WorldState:
-    """The board. ``status`` is building, success or stuck; ``sequence`` counts placements."""
+    """The board as it was observed last.
+
+    Attributes:
+        trial_id: of the trial.
+        observations: all of them, from the board as it was found.
+        placements: the blocks that stand, in the order in which they landed.
+        built: the cells that they fill.
+        status: building, success or stuck.
+    """
 
     trial_id: str
-    sequence: int
+    observations: Observations
+    placements: Blocks
     built: Mask
-    placements: tuple[Placed, ...]
     status: TrialStatus
+
+    @property
+    def sequence(self) -> int:
+        """The number of the latest observation."""
+        return len(self.observations) - 1
+
+
+def observed(
+    trial_id: str, board: Board, observations: Observations, status: TrialStatus
+) -> WorldState:
+    """The state after some observations."""
+    blocks = standing(observations)
+    return WorldState(trial_id, observations, blocks, mask_of(board, blocks), status)
 
 
 @dataclass(frozen=True)
 class SearchRequest:
-    """The selector wants to know what filling a region takes."""
+    """The selector asks for the solves of a decision, all in one message."""
 
     trial_id: str
-    query: Query
+    queries: tuple[Query, ...]
 
 
 @dataclass(frozen=True)
 class SearchAnswer:
-    """What filling a region takes."""
+    """The result of one solve; the answers of a request come one by one, in any order."""
 
     trial_id: str
     query: Query
@@ -66,71 +89,26 @@ class SearchAnswer:
 
 @dataclass(frozen=True)
 class ProposalMade:
-    """A person has said what to build next, or not to."""
+    """A person proposes what to build next, or withdraws a region, or gives up."""
 
     trial_id: str
     proposal: Proposal
 
 
 @dataclass(frozen=True)
-class SubgoalChosen:
-    """The subgoal to execute from the state with ``sequence`` on, or that the planner gives up.
-
-    It carries all decisions of the trial so far, so that who missed one, or comes late, knows as
-    much as all others. The subgoal is the last one begun of the last decision. ``proposals`` are
-    those of a person that led to the decisions.
-    """
-
-    trial_id: str
-    sequence: int
-    decisions: tuple[DecisionRecord, ...]
-    proposals: tuple[Proposal, ...] = ()
-
-    @property
-    def decision(self) -> Decision:
-        """The last decision."""
-        return self.decisions[-1].decision
-
-    @property
-    def index(self) -> int:
-        """Which of its subgoals is to be executed."""
-        return max(0, self.decisions[-1].executed - 1)
-
-    @property
-    def subgoal(self) -> Subgoal | None:
-        """The subgoal to execute; None if the planner gives up."""
-        return self.decision.subgoals[self.index] if self.decision.subgoals else None
-
-    @property
-    def built(self) -> Mask:
-        """The state from which it is executed."""
-        return self.decision.subgoals[self.index - 1].region if self.index else self.decision.built
-
-    @property
-    def end(self) -> int:
-        """The sequence number of the state in which it has been executed."""
-        return self.sequence + (self.subgoal.execute if self.subgoal else 0)
-
-    def way(self, board: Board) -> list[Mask]:
-        """The states that its execution leads through, from ``sequence`` to ``end``."""
-        placements = self.subgoal.placements[: self.subgoal.execute] if self.subgoal else ()
-        return rules.states_along(board, self.built, placements)
-
-
-@dataclass(frozen=True)
 class PlanMade:
-    """The placements that are about to be carried out for a subgoal, for whoever watches."""
+    """The placements about to be carried out for a subgoal, for viewers."""
 
     trial_id: str
     sequence: int
-    region: Mask
+    target: Mask
     execute: int
     placements: tuple[Placed, ...]
 
 
 @dataclass(frozen=True)
 class Solve:
-    """The searcher has to solve a query; its :class:`SearchAnswer` comes back to it."""
+    """The searcher has to solve a query; the :class:`SearchAnswer` comes back to it."""
 
     trial_id: str
     query: Query
@@ -138,30 +116,63 @@ class Solve:
 
 @dataclass(frozen=True)
 class PlaceBlock:
-    """Drop a block on the board of the state with ``sequence``."""
+    """Order a placement on the board of the state with ``sequence``."""
 
     trial_id: str
     sequence: int
     placement: Placement
 
 
+class PlacementCode(IntEnum):
+    """What became of an order; the numbers are those of the message."""
+
+    PLACED = 1
+    """The block rests where it was ordered."""
+    SLIPPED = 2
+    """A block landed, but elsewhere."""
+    LOST = 3
+    """No block landed; the order can be given again."""
+    COLLAPSED = 4
+    """The tower fell."""
+    IMPOSSIBLE = 5
+    """The block would not come to rest inside the board; nothing was tried."""
+    FAILED = 6
+    """No block can be placed any more: the trial has to end."""
+    TRY_AGAIN = 7
+    """Not now; the order can be given again."""
+    IN_PROGRESS = 8
+    """The order is being carried out; another outcome follows."""
+
+
 @dataclass(frozen=True)
 class PlacementOutcome:
-    """What became of a :class:`PlaceBlock`; ``reason`` says why it was not accepted.
+    """The result of a :class:`PlaceBlock`.
 
-    ``failed``: it is not the block; nothing can be placed on that state any more.
+    Attributes:
+        trial_id: of the trial.
+        sequence: of the state that the order referred to.
+        placed: where a block landed; None if none did.
+        reason: a sentence that says why, '' for the usual one.
+        code: what became of the order.
+        progress: of an order that is being carried out, from 0 to 1.
     """
 
     trial_id: str
     sequence: int
     placed: Placed | None
     reason: str = ''
-    failed: bool = False
+    code: PlacementCode = PlacementCode.PLACED
+    progress: float = 0.0
+
+    @property
+    def failed(self) -> bool:
+        """Whether the world can place no block on that state any more."""
+        return self.code is PlacementCode.FAILED
 
 
 @dataclass(frozen=True)
 class CancelTrial:
-    """End the trial as it stands; ``reason`` says why if nobody asked for it."""
+    """End the trial as it stands; ``reason`` is '' if a user asked for it."""
 
     trial_id: str
     reason: str = ''
@@ -169,21 +180,22 @@ class CancelTrial:
 
 @dataclass(frozen=True)
 class TrialEnded:
-    """The trial is over: nobody does anything more for it.
+    """The trial is over; every part stops working on it.
 
-    ``reason`` says why it was cancelled, '' if somebody asked for it.
+    ``record`` is what happened in it; only the scribe, which writes it, has it.
     """
 
     trial_id: str
     status: TrialStatus
     reason: str = ''
+    record: TrialRecord | None = None
 
 
 @dataclass(frozen=True)
 class Remind:
-    """Say again what nobody has answered; it may have been lost.
+    """Send again what has not been answered; a message may have been lost.
 
-    Never needed inside a process. Every answer is the same when it is asked for twice.
+    Never needed inside a process. Each answer is the same when it is asked for twice.
     """
 
     trial_id: str

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from blocks_planning.trials.execution import SubgoalChosen, history
 from blocks_planning.trials.messages import (
     CancelTrial,
     Message,
     PlacementOutcome,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
@@ -19,21 +19,29 @@ from blocks_planning.trials.status import TrialStatus
 
 @dataclass(frozen=True)
 class Memory:
-    """What has happened so far; ``status`` is building until the trial is over."""
+    """What has happened so far; ``status`` is building until the trial is over.
+
+    ``reason`` says why the trial was cancelled.
+    """
 
     trial: TrialStarted | None = None
     state: WorldState | None = None
     chosen: SubgoalChosen | None = None
     status: TrialStatus = TrialStatus.BUILDING
+    reason: str = ''
 
     def record(self) -> TrialRecord:
         """The record of the trial; it must have begun."""
         if self.trial is None:
             raise ValueError('there is no record before a trial begins')
-        placements = () if self.state is None else self.state.placements
-        decisions = () if self.chosen is None else self.chosen.decisions
-        proposals = () if self.chosen is None else self.chosen.proposals
-        return TrialRecord(self.trial.spec, self.status, placements, decisions, proposals)
+        return TrialRecord(
+            spec=self.trial.spec,
+            status=self.status,
+            observations=() if self.state is None else self.state.observations,
+            decisions=() if self.chosen is None else self.chosen.decisions,
+            proposals=() if self.chosen is None else self.chosen.proposals,
+            reason=self.reason,
+        )
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
@@ -56,26 +64,41 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             return _cancelled(memory, trial.trial_id, reason)
         case _:
             return memory, ()
-    memory = replace(memory, status=_status(memory.state, memory.chosen))
+    memory = replace(memory, status=_status(memory))
+    return memory, _ended(memory, trial.trial_id)
+
+
+def _ended(memory: Memory, trial_id: str) -> tuple[TrialEnded, ...]:
+    """What the scribe says of a trial: nothing until it is over."""
     if memory.status is TrialStatus.BUILDING:
-        return memory, ()
-    return memory, (TrialEnded(trial.trial_id, memory.status),)
+        return ()
+    return (TrialEnded(trial_id, memory.status, memory.reason, memory.record()),)
 
 
 def _cancelled(memory: Memory, trial_id: str, reason: str) -> tuple[Memory, tuple[Message, ...]]:
-    memory = replace(memory, status=TrialStatus.CANCELLED)
-    return memory, (TrialEnded(trial_id, memory.status, reason),)
+    memory = replace(memory, status=TrialStatus.CANCELLED, reason=reason)
+    return memory, _ended(memory, trial_id)
 
 
-def _status(state: WorldState | None, chosen: SubgoalChosen | None) -> TrialStatus:
-    """How the trial stands, once both sides have said what belongs together.
+def _status(memory: Memory) -> TrialStatus:
+    """How the trial stands, once state and decision are known that belong together.
 
     State and subgoal arrive in either order. A board that is complete or stuck ends the trial
     when the decision that led there is known too.
     """
-    if state is None:
+    trial, state, chosen = memory.trial, memory.state, memory.chosen
+    if trial is None or state is None:
         return TrialStatus.BUILDING
     if chosen is not None and chosen.subgoal is None and chosen.sequence == state.sequence:
         return TrialStatus.GAVE_UP
-    led_here = chosen is not None and chosen.sequence < state.sequence <= chosen.end
-    return state.status if led_here or state.sequence == 0 else TrialStatus.BUILDING
+    if state.sequence == 0 or (chosen is not None and _leads_to(chosen, trial, state)):
+        return state.status
+    return TrialStatus.BUILDING
+
+
+def _leads_to(chosen: SubgoalChosen, trial: TrialStarted, state: WorldState) -> bool:
+    """Whether no other decision is due between a subgoal and a state."""
+    if chosen.subgoal is None or chosen.sequence >= state.sequence:
+        return False
+    seen = history(trial.spec.task.board, state.observations)
+    return chosen.progress(trial.spec, seen).sequence == state.sequence

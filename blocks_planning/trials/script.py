@@ -13,12 +13,15 @@
     strategies:
       - {name: none}
       - {name: scoping, lambda: {from: 0, to: 0.008, count: 5}}
+    worlds:                                  # optional: one that obeys if left out
+      - {name: simulated}
+    built: [[2, 1, 0, 0]]                    # optional: blocks that stand at the start, each
+                                             # [width, height, column, row]
 
-A setting of a search or a strategy may be a list, or evenly spaced numbers ``{from, to, count}``
-with both ends: then there is one search or strategy for each value, and for each combination of
-values if there are several lists. The trials are all combinations, in the order strategies,
-searches, stimuli, seeds, the last the fastest. Paths of stimuli are relative to the working
-directory.
+A setting may be a list, or evenly spaced numbers ``{from, to, count}`` with both ends: then there
+is one search, strategy or world for each value, and for each combination of values if there are
+several lists. The trials are all combinations, in the order worlds, strategies, searches, stimuli,
+seeds, the last the fastest. Paths of stimuli are relative to the working directory.
 """
 
 from __future__ import annotations
@@ -31,7 +34,8 @@ from math import prod
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from blocks_planning.board.blocks import PAPER_LIBRARY, Library, parse_library
+from blocks_planning.board.blocks import PAPER_LIBRARY, Library, Placed, parse_library
+from blocks_planning.board.geometry import MAX_SIDE
 from blocks_planning.board.stimuli import find_stimuli
 from blocks_planning.board.task import Task
 from blocks_planning.errors import ConfigurationError
@@ -40,9 +44,10 @@ from blocks_planning.search.randomness import MAX_SEED
 from blocks_planning.search.result import DEFAULT_BUDGET, MAX_BUDGET
 from blocks_planning.search.searches import make_search
 from blocks_planning.settings import check_whole
-from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.registry import make_strategy
 from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.worlds.observation import Blocks
+from blocks_planning.worlds.world import Simulated, World, make_world
 
 MAX_SEEDS = 1_000_000
 MAX_VALUES = 10_000
@@ -75,11 +80,11 @@ def read_session(path: Path, participant: str = '') -> Script:
 
     Args:
         path: of the file.
-        participant: code of the person of all trials in which one scopes; '': as the script says.
+        participant: code of the person in all trials whose strategy asks one; '': as in the script.
 
     Raises:
-        ConfigurationError: naming file, line and key, for what is unknown, missing, or out of its
-            range, for a trial that is there twice, and for more than ``MAX_TRIALS`` trials.
+        ConfigurationError: naming file, line and key, for an unknown or missing key, a value
+            out of its range, a trial that is described twice, and more than ``MAX_TRIALS`` trials.
     """
     script = read_yaml(path)
     top = script.entries(
@@ -87,18 +92,23 @@ def read_session(path: Path, participant: str = '') -> Script:
         'seeds',
         'searches',
         'strategies',
-        optional=('library', 'first_seed', 'budget', 'pause_s'),
+        optional=('library', 'first_seed', 'budget', 'pause_s', 'worlds', 'built'),
     )
     towers, seeds = read_towers(top), read_seeds(top)
     strategies = read_planners(top['strategies'], make_strategy)
     if participant:
         strategies = _with_participant(path, strategies, participant)
     searches = read_planners(top['searches'], make_search)
-    budget = read_budget(top)
-    if len(towers) * len(seeds) * len(strategies) * len(searches) > MAX_TRIALS:
+    budget, worlds, built = read_budget(top), read_worlds(top), _read_built(top)
+    if prod(map(len, (towers, seeds, strategies, searches, worlds))) > MAX_TRIALS:
         raise script.fail(f'describes more than {MAX_TRIALS} trials')
     specs = [
-        TrialSpec(tower.name, tower.task, strategy, search, seed, budget)
+        top['built' if built else 'stimuli'].check(
+            partial(
+                TrialSpec, tower.name, tower.task, strategy, search, seed, budget, world, built
+            )
+        )
+        for world in worlds
         for strategy in strategies
         for search in searches
         for tower in towers
@@ -110,11 +120,35 @@ def read_session(path: Path, participant: str = '') -> Script:
 
 
 def _with_participant(path: Path, strategies: list[Any], code: str) -> list[Any]:
-    if not any(isinstance(strategy, Human) for strategy in strategies):
+    if not any(strategy.asks_person for strategy in strategies):
         raise ConfigurationError(
-            f'{path}: participant {code!r} was given, but no strategy of it is human'
+            f'{path}: participant {code!r} was given, but no strategy in the script asks a person'
         )
-    return [replace(s, participant=code) if isinstance(s, Human) else s for s in strategies]
+    return [
+        replace(strategy, participant=code) if strategy.asks_person else strategy
+        for strategy in strategies
+    ]
+
+
+def read_worlds(top: Mapping[str, Located]) -> list[World]:
+    """The worlds of the key ``worlds``; the one that obeys if it is left out."""
+    if 'worlds' not in top:
+        return [Simulated()]
+    return read_planners(top['worlds'], make_world)
+
+
+def _read_built(top: Mapping[str, Located]) -> Blocks:
+    """The blocks of the key ``built``, each [width, height, column, row]."""
+    if 'built' not in top:
+        return ()
+    return tuple(_block(item) for item in top['built'].items())
+
+
+def _block(item: Located) -> Placed:
+    numbers = [read_whole(number, 'a block', 0, MAX_SIDE) for number in item.items()]
+    if len(numbers) != 4 or not (numbers[0] and numbers[1]):
+        raise item.fail(f'expected [width, height, column, row] of a block, got {numbers}')
+    return Placed(*numbers)
 
 
 def _read_pause(top: Mapping[str, Located]) -> float:
@@ -130,7 +164,8 @@ def read_towers(top: Mapping[str, Located]) -> list[Tower]:
     """The towers of the keys ``stimuli`` and ``library``."""
     library = PAPER_LIBRARY
     if 'library' in top:
-        library = top['library'].check(lambda: parse_library(read_text(top['library'])))
+        blocks = read_text(top['library'])
+        library = top['library'].check(lambda: parse_library(blocks))
     return [tower for address in top['stimuli'].items() for tower in _towers(address, library)]
 
 
@@ -152,7 +187,8 @@ def read_budget(top: Mapping[str, Located]) -> int:
 
 
 def _towers(address: Located, library: Library) -> list[Tower]:
-    stimuli = address.check(lambda: find_stimuli(read_text(address)))
+    text = read_text(address)
+    stimuli = address.check(lambda: find_stimuli(text))
     return [Tower(s.name, Task(s.board, s.silhouette, library)) for s in stimuli]
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from blocks_planning.search.result import SolveResult
 from blocks_planning.subgoals.decision import Query
+from blocks_planning.trials.execution import SubgoalChosen, history
 from blocks_planning.trials.messages import (
     Message,
     PlaceBlock,
@@ -15,16 +16,15 @@ from blocks_planning.trials.messages import (
     SearchAnswer,
     SearchRequest,
     Solve,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
 )
 
-MOST_SOLVING = 512
-"""No planner asks so much at once; who asks more is not answered, and asks again."""
-MOST_KNOWN = 8192
-"""No trial needs so many answers; the oldest are solved again."""
+MOST_SOLVING = 1 << 16
+"""Most queries that are open at once; excess queries are dropped, and the selector asks again."""
+MOST_KNOWN = 1 << 17
+"""Most answers that are kept of a trial; the oldest are dropped and solved again."""
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,8 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
     match message:
         case TrialEnded():
             return Memory(), ()
-        case SearchRequest(trial_id, query):
-            if query in memory.known:
-                return memory, (SearchAnswer(trial_id, query, memory.known[query]),)
-            return _solve(memory, trial_id, query)
+        case SearchRequest(trial_id, queries):
+            return _answer(memory, trial_id, queries)
         case SearchAnswer(_, query, result) if query not in memory.known:
             known, solving = {**memory.known, query: result}, memory.solving - {query}
             if len(known) > MOST_KNOWN:
@@ -77,29 +75,46 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
     return memory, ()
 
 
-def _solve(memory: Memory, trial_id: str, query: Query) -> tuple[Memory, tuple[Message, ...]]:
-    if query in memory.solving or len(memory.solving) >= MOST_SOLVING:
-        return memory, ()
-    return replace(memory, solving=memory.solving | {query}), (Solve(trial_id, query),)
+def _answer(
+    memory: Memory, trial_id: str, queries: Iterable[Query]
+) -> tuple[Memory, tuple[Message, ...]]:
+    """Answer what is known; have the rest solved, unless it is being solved already."""
+    said: list[Message] = []
+    solving = set(memory.solving)
+    for query in queries:
+        if query in memory.known:
+            said.append(SearchAnswer(trial_id, query, memory.known[query]))
+        elif query not in solving and len(solving) < MOST_SOLVING:
+            solving.add(query)
+            said.append(Solve(trial_id, query))
+    return replace(memory, solving=frozenset(solving)), tuple(said)
 
 
 def _act(memory: Memory, only_for: Query | None = None) -> tuple[Memory, tuple[Message, ...]]:
-    """Send the placement that the latest state calls for, if the subgoal leads on from it."""
+    """Order the placement that the latest state calls for, if the subgoal leads on from it."""
     trial, state, chosen = memory.trial, memory.state, memory.chosen
     if trial is None or state is None or chosen is None or chosen.subgoal is None:
         return memory, ()
-    query = Query(chosen.built, chosen.subgoal.region)
+    query = Query(chosen.built, chosen.subgoal.target)
     if only_for not in (None, query):
         return memory, ()
     if query not in memory.known:
-        return _solve(memory, trial.trial_id, query)
+        return _answer(memory, trial.trial_id, (query,))
     plan = memory.known[query].placements
     said: tuple[Message, ...] = ()
     if memory.planned != chosen:
         execute = chosen.subgoal.execute
-        said = (PlanMade(trial.trial_id, chosen.sequence, query.region, execute, plan),)
-    done = state.sequence - chosen.sequence
-    underway = 0 <= done < min(chosen.subgoal.execute, len(plan))
-    if underway and state.built == chosen.way(trial.spec.task.board)[done]:
+        said = (PlanMade(trial.trial_id, chosen.sequence, query.target, execute, plan),)
+    done = _next_placement(trial, state, chosen)
+    if done is not None and done < len(plan):
         said += (PlaceBlock(trial.trial_id, state.sequence, plan[done].placement),)
     return replace(memory, planned=chosen), said
+
+
+def _next_placement(trial: TrialStarted, state: WorldState, chosen: SubgoalChosen) -> int | None:
+    """Index in the plan of the placement that the latest state calls for; None: there is none."""
+    if chosen.sequence > state.sequence:
+        return None
+    seen = history(trial.spec.task.board, state.observations)
+    progress = chosen.progress(trial.spec, seen)
+    return progress.done if progress.is_open else None

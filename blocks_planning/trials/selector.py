@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from blocks_planning.board import rules
-from blocks_planning.board.geometry import Mask
-from blocks_planning.board.task import Task
 from blocks_planning.search.result import SolveResult
-from blocks_planning.subgoals.decision import Decision, Query
-from blocks_planning.subgoals.human import Human, used
+from blocks_planning.subgoals.decision import Decision, Query, Situation
+from blocks_planning.subgoals.human import used
 from blocks_planning.subgoals.proposals import (
     Proposal,
     ProposalKind,
+    asks_nothing,
+    out_of_turn,
     proposed_at,
     target_of,
 )
+from blocks_planning.trials.execution import History, SubgoalChosen, history
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
     Remind,
     SearchAnswer,
     SearchRequest,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
@@ -31,6 +30,7 @@ from blocks_planning.trials.messages import (
 from blocks_planning.trials.record import DecisionRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
+from blocks_planning.worlds.observation import standing
 
 
 @dataclass(frozen=True)
@@ -74,127 +74,135 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             memory = replace(memory, proposals=(*memory.proposals, proposal))
             return (memory, ()) if state is None else _consider(memory, trial, state, proposal)
         case Remind():
-            unanswered = [query for query in memory.asked if query not in memory.known]
-            return memory, tuple(SearchRequest(trial.trial_id, query) for query in unanswered)
+            unanswered = tuple(query for query in memory.asked if query not in memory.known)
+            return memory, _request(trial.trial_id, unanswered)
     return memory, ()
 
 
 def reason_against(memory: Memory, proposal: Proposal) -> str:
-    """Why a person's proposal is not taken; '' if it is, or was, or waits for its state."""
+    """Why a proposal is refused; '' if it is taken, was taken before, or waits for its state."""
     if memory.trial is None or memory.state is None:
         return ''
     spec, state = memory.trial.spec, memory.state
-    if not isinstance(spec.strategy, Human):
+    if not spec.strategy.asks_person:
         return f'the strategy is {spec.strategy.name}, which asks no person'
-    taken = len(proposed_at(memory.proposals, proposal.sequence))
-    if proposal.number > taken:
-        return f'number: expected {taken}, got {proposal.number}'
-    is_new = proposal.number == taken and proposal.sequence == state.sequence
-    target = target_of(spec.task, state.built, proposal.region)
-    if is_new and proposal.kind is ProposalKind.BUILD and target == state.built:
-        return 'region: expected a target cell that is still empty'
-    return ''
+    taken = proposed_at(memory.proposals, proposal.sequence)
+    if proposal.number < len(taken):
+        return ''
+    reason = out_of_turn(memory.proposals, proposal)
+    if reason or proposal.sequence != state.sequence:
+        return reason
+    return asks_nothing(spec.task, state.built, proposal)
 
 
 def _is_open(memory: Memory, query: Query) -> bool:
-    """Whether a query was asked and not answered; the first answer holds."""
+    """Whether a query was asked and is not answered; the first answer counts."""
     return query in memory.asked and query not in memory.known
 
 
 def _is_next(memory: Memory, spec: TrialSpec, proposal: Proposal) -> bool:
-    """Whether a person is asked at all, and the proposals before this one were all taken."""
-    earlier = proposed_at(memory.proposals, proposal.sequence)
-    return isinstance(spec.strategy, Human) and proposal.number == len(earlier)
+    """Whether the strategy asks a person, and this proposal is the next one in its state."""
+    return spec.strategy.asks_person and not out_of_turn(memory.proposals, proposal)
 
 
 def _consider(
     memory: Memory, trial: TrialStarted, state: WorldState, proposal: Proposal
 ) -> tuple[Memory, tuple[Message, ...]]:
-    """Take a person's word; what is known already to be unsolvable is answered once more."""
+    """Take a proposal; a region that is known to be unsolvable is answered once more."""
     memory, said = _go_on(memory, trial.spec, state)
     target = target_of(trial.spec.task, state.built, proposal.region)
     query = Query(state.built, target)
     is_known = proposal.kind is ProposalKind.BUILD and query in memory.known
     if not said and is_known and proposal.sequence == state.sequence:
-        said = (SearchRequest(trial.trial_id, query),)
+        said = _request(trial.trial_id, (query,))
     return memory, said
 
 
 def _go_on(
     memory: Memory, spec: TrialSpec, state: WorldState
 ) -> tuple[Memory, tuple[Message, ...]]:
-    """Take decision after decision up to the latest state, beginning with the last one taken.
+    """Make decision after decision up to the latest state, beginning with the last one made.
 
-    That is one decision at most, unless this selector knows nothing because it has just been
-    started in the middle of a trial. Then it decides as it has decided before.
+    That is one decision at most, unless this selector was started in the middle of a trial and
+    knows nothing. Then it decides as it has decided before.
     """
-    states = rules.states_along(spec.task.board, 0, state.placements)
+    seen = history(spec.task.board, state.observations)
     chosen = memory.chosen
     while True:
-        at = _next_decision(spec, chosen, states)
-        if at is None or (at == state.sequence and state.status is not TrialStatus.BUILDING):
+        due = due_decision(spec, chosen, seen)
+        if due is None or (due == state.sequence and state.status is not TrialStatus.BUILDING):
             break
-        if chosen is not None and _has_next(chosen, states[at]):
-            chosen = _chosen(chosen, at, executed=chosen.index + 2)
+        if chosen is not None and is_followed_on(spec, chosen, seen):
+            chosen = chosen.begun(due, executed=chosen.index + 2)
             continue
-        proposals = proposed_at(memory.proposals, at)
-        answer = spec.strategy.decide(spec.task, states[at], spec.seed, memory.known, proposals)
+        situation = _situation(memory, spec, seen, chosen, due)
+        answer = spec.strategy.decide(situation)
         if not isinstance(answer, Decision):
             return _ask(replace(memory, chosen=chosen), state, answer)
-        chosen = _decided(
-            spec.task, state.trial_id, chosen, DecisionRecord(at, answer, 0), proposals
-        )
+        chosen = _decided(state.trial_id, chosen, DecisionRecord(due, answer, 0), situation)
     said = (chosen,) if chosen is not None and chosen != memory.chosen else ()
     return replace(memory, chosen=chosen), said
 
 
-def _next_decision(spec: TrialSpec, chosen: SubgoalChosen | None, states: list[int]) -> int | None:
-    """In which state to decide next: where the subgoal ends, or the way is lost; None: not yet."""
+def due_decision(spec: TrialSpec, chosen: SubgoalChosen | None, seen: History) -> int | None:
+    """The sequence of the state in which something must be chosen next; None: not yet."""
     if chosen is None:
         return 0
-    if chosen.subgoal is None:
+    if chosen.subgoal is None or chosen.sequence >= len(seen.states):
         return None
-    expected = chosen.way(spec.task.board)
-    for step_number, built in enumerate(states[chosen.sequence : chosen.end + 1]):
-        if built != expected[step_number]:
-            return chosen.sequence + step_number
-    return chosen.end if chosen.end < len(states) else None
+    progress = chosen.progress(spec, seen)
+    return None if progress.is_open else progress.sequence
 
 
-def _has_next(chosen: SubgoalChosen, built: Mask) -> bool:
-    """Whether a subgoal is filled and its decision has another one."""
-    filled = chosen.subgoal is not None and chosen.subgoal.region == built
-    return filled and chosen.index + 1 < len(chosen.decision.subgoals)
+def is_followed_on(spec: TrialSpec, chosen: SubgoalChosen, seen: History) -> bool:
+    """Whether the current subgoal is done and the next one of its decision is to be executed."""
+    progress = chosen.progress(spec, seen)
+    if chosen.subgoal is None or not progress.is_done or not chosen.has_next:
+        return False
+    is_filled = seen.states[progress.sequence] == chosen.subgoal.target
+    return is_filled or spec.strategy.is_blind
 
 
-def _chosen(chosen: SubgoalChosen, at: int, executed: int) -> SubgoalChosen:
-    """The same decisions, when so many subgoals of the last one have been begun."""
-    last = replace(chosen.decisions[-1], executed=executed)
-    return replace(chosen, sequence=at, decisions=(*chosen.decisions[:-1], last))
+def _situation(
+    memory: Memory,
+    spec: TrialSpec,
+    seen: History,
+    chosen: SubgoalChosen | None,
+    sequence: int,
+) -> Situation:
+    return Situation(
+        task=spec.task,
+        built=seen.states[sequence],
+        seed=spec.seed,
+        known=memory.known,
+        proposals=proposed_at(memory.proposals, sequence),
+        blocks=standing(seen.observations[: sequence + 1]),
+        decisions=0 if chosen is None else len(chosen.decisions),
+    )
 
 
 def _decided(
-    task: Task,
-    trial_id: str,
-    before: SubgoalChosen | None,
-    entry: DecisionRecord,
-    proposals: tuple[Proposal, ...],
+    trial_id: str, before: SubgoalChosen | None, entry: DecisionRecord, situation: Situation
 ) -> SubgoalChosen:
-    """What has been chosen after another decision."""
+    """What is chosen after another decision."""
     if before is None:
-        before = SubgoalChosen(trial_id, entry.placed, ())
-    led_here = used(task, entry.decision, proposals) if proposals else ()
+        before = SubgoalChosen(trial_id, entry.sequence, ())
+    led_here = used(situation, entry.decision) if situation.proposals else ()
     chosen = replace(
         before,
         decisions=(*before.decisions, entry),
         proposals=(*before.proposals, *led_here),
     )
-    return _chosen(chosen, entry.placed, executed=min(1, len(entry.decision.subgoals)))
+    return chosen.begun(entry.sequence, executed=min(1, len(entry.decision.subgoals)))
 
 
 def _ask(
-    memory: Memory, state: WorldState, queries: list[Query]
+    memory: Memory, state: WorldState, queries: Sequence[Query]
 ) -> tuple[Memory, tuple[Message, ...]]:
-    new = tuple(query for query in queries if query not in memory.asked)
-    requests = tuple(SearchRequest(state.trial_id, query) for query in new)
-    return replace(memory, asked=memory.asked + new), requests
+    asked = set(memory.asked)
+    new = tuple(query for query in queries if query not in asked)
+    return replace(memory, asked=memory.asked + new), _request(state.trial_id, new)
+
+
+def _request(trial_id: str, queries: tuple[Query, ...]) -> tuple[SearchRequest, ...]:
+    return (SearchRequest(trial_id, queries),) if queries else ()

@@ -12,10 +12,22 @@ from blocks_planning import settings
 from blocks_planning.board.blocks import format_library
 from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
+from blocks_planning.errors import ConfigurationError
+from blocks_planning.families import Registry
 from blocks_planning.search.randomness import MAX_SEED
 from blocks_planning.search.result import DEFAULT_BUDGET, MAX_BUDGET
-from blocks_planning.search.searches import Search
+from blocks_planning.search.searches import SEARCHES, Search
 from blocks_planning.subgoals.decision import Strategy
+from blocks_planning.subgoals.registry import STRATEGIES
+from blocks_planning.worlds.observation import Blocks, impossible
+from blocks_planning.worlds.world import WORLDS, Simulated, World
+
+FAMILIES: dict[str, Registry] = {
+    'strategy': STRATEGIES,
+    'search': SEARCHES,
+    'world': WORLDS,
+}
+"""The families of which a trial names a member each, by the attribute that holds it."""
 
 # Many trials share a tower.
 _drawn = lru_cache(maxsize=1024)(Board.draw)
@@ -23,7 +35,7 @@ _drawn = lru_cache(maxsize=1024)(Board.draw)
 
 @dataclass(frozen=True)
 class TrialSpec:
-    """A tower to rebuild, by whom, and the seed of every tie.
+    """A tower to rebuild, the planner that does it, and the seed for tie-breaking.
 
     Attributes:
         stimulus: name of the silhouette, for people; it changes nothing.
@@ -32,9 +44,12 @@ class TrialSpec:
         search: the action-level search.
         seed: 0 to 2**64 - 1.
         budget: b of every solve [states].
+        world: what becomes of orders.
+        built: blocks that stand when the trial starts, supports before what rests on them.
 
     Raises:
-        ConfigurationError: if the seed or the budget is out of its range.
+        ConfigurationError: if the seed or the budget is out of its range, or the blocks cannot
+            stand as they are said to.
     """
 
     stimulus: str
@@ -43,10 +58,15 @@ class TrialSpec:
     search: Search
     seed: int = 0
     budget: int = DEFAULT_BUDGET
+    world: World = Simulated()
+    built: Blocks = ()
 
     def __post_init__(self) -> None:
         settings.check_whole('seed', self.seed, 0, MAX_SEED)
         settings.check_whole('budget', self.budget, 0, MAX_BUDGET)
+        problem = impossible(self.task.board, self.built)
+        if problem:
+            raise ConfigurationError(f'built: {problem}')
 
     @cached_property
     def trial_id(self) -> str:
@@ -56,19 +76,23 @@ class TrialSpec:
 
     def to_json(self) -> dict[str, Any]:
         """The part of a record that was known before the trial; see :mod:`.record`."""
-        strategy = settings.settings_of(self.strategy)
         return {
             'stimulus': self.stimulus,
             'width': self.task.board.width,
             'height': self.task.board.height,
             'silhouette': _drawn(self.task.board, self.task.silhouette).split('\n'),
             'library': format_library(self.task.library),
-            'strategy': self.strategy.name,
-            'lambda': strategy.get('lambda'),
-            'commit': strategy.get('commit'),
-            **{key: strategy[key] for key in ('participant', 'costs') if key in strategy},
-            'search': self.search.name,
-            'search_settings': settings.settings_of(self.search),
+            'built': [list(placed) for placed in self.built],
+            **self.families_to_json(),
             'seed': self.seed,
             'budget': self.budget,
         }
+
+    def families_to_json(self) -> dict[str, Any]:
+        """The name and the settings of each family's member."""
+        found: dict[str, Any] = {}
+        for family in FAMILIES:
+            chosen = getattr(self, family)
+            found[family] = chosen.name
+            found[f'{family}_settings'] = settings.settings_of(chosen)
+        return found

@@ -13,6 +13,8 @@ class TrialStatus(str, Enum):
     """The filled cells are the silhouette: the paper's perfect reconstruction."""
     STUCK = 'stuck'
     """Nothing legal is left."""
+    COLLAPSED = 'collapsed'
+    """The tower of loose blocks fell."""
     GAVE_UP = 'gave_up'
     """The planner places no further block."""
     CANCELLED = 'cancelled'

@@ -2,34 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from blocks_planning.board import rules
-from blocks_planning.board.blocks import Placed, format_library
 from blocks_planning.board.geometry import Mask
 from blocks_planning.board.task import Task
 from blocks_planning.trials.messages import (
     Message,
     PlaceBlock,
+    PlacementCode,
     PlacementOutcome,
     TrialEnded,
     TrialStarted,
     WorldState,
+    observed,
 )
+from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
+from blocks_planning.worlds.observation import MAX_OBSERVATIONS, Blocks, Observation, Observations
+from blocks_planning.worlds.world import ImpossibleOrder
+
+TOO_MANY = f'the trial would need more than {MAX_OBSERVATIONS} observations'
 
 
 @dataclass(frozen=True)
 class Memory:
-    """What the world knows: the task and the state of its board, while a trial runs."""
+    """What the world knows: the trial and the state of its board, while it runs."""
 
-    task: Task | None = None
+    spec: TrialSpec | None = None
     state: WorldState | None = None
 
 
-def status_of(task: Task, built: Mask) -> TrialStatus:
-    """How a board stands: success, stuck or building."""
+def status_of(spec: TrialSpec, blocks: Blocks, built: Mask) -> TrialStatus:
+    """How a board stands: success, stuck, collapsed or building.
+
+    Args:
+        spec: silhouette, library and world.
+        blocks: that stand.
+        built: the cells that they fill.
+    """
+    if not spec.world.holds(blocks):
+        return TrialStatus.COLLAPSED
+    return _status_of_cells(spec.task, built)
+
+
+@lru_cache(maxsize=4096)
+def _status_of_cells(task: Task, built: Mask) -> TrialStatus:
     if built == task.silhouette:
         return TrialStatus.SUCCESS
     if next(rules.legal_placements(task, built, task.silhouette), None) is None:
@@ -37,56 +56,78 @@ def status_of(task: Task, built: Mask) -> TrialStatus:
     return TrialStatus.BUILDING
 
 
+def state_after(trial_id: str, spec: TrialSpec, observations: Observations) -> WorldState:
+    """The state of a trial's board after some observations."""
+    state = observed(trial_id, spec.task.board, observations, TrialStatus.BUILDING)
+    return replace(state, status=status_of(spec, state.placements, state.built))
+
+
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
-    """Clear the board for a new trial; drop a block that refers to the current state."""
-    task, state = memory.task, memory.state
+    """Set the board up for a new trial; carry out an order that refers to the current state."""
+    spec, state = memory.spec, memory.state
     if isinstance(message, TrialStarted):
         if state is not None and state.trial_id == message.trial_id:
             return memory, ()
-        cleared = WorldState(message.trial_id, 0, 0, (), status_of(message.spec.task, 0))
-        return Memory(message.spec.task, cleared), (cleared,)
-    if task is None or state is None or state.trial_id != message.trial_id:
+        found = (Observation(landed=message.spec.built),)
+        cleared = state_after(message.trial_id, message.spec, found)
+        return Memory(message.spec, cleared), (cleared,)
+    if spec is None or state is None or state.trial_id != message.trial_id:
         return memory, ()
     match message:
         case TrialEnded():
             return Memory(), ()
         case PlaceBlock() if message.sequence == state.sequence:
-            return _drop(memory, task, state, message)
+            return _carry_out(memory, spec, state, message)
     return memory, ()
 
 
-def restored(memory: Memory, placements: Iterable[Placed]) -> Memory | None:
-    """The world after placements that were carried out before; None if they can't have been."""
-    assert memory.state is not None
-    for sequence, placed in enumerate(placements):
-        action = PlaceBlock(memory.state.trial_id, sequence, placed.placement)
-        memory, _ = step(memory, action)
-        assert memory.state is not None
-        if memory.state.placements[sequence:] != (placed,):
+def restored(memory: Memory, observations: Observations) -> Memory | None:
+    """The world after observations that a journal kept; None if they cannot have been made."""
+    spec, state = memory.spec, memory.state
+    assert spec is not None
+    assert state is not None
+    kept = state.observations[0]
+    if not observations:
+        return memory
+    if observations[0] != kept:
+        return None
+    blocks, built = state.placements, state.built
+    for sequence, seen in enumerate(observations[1:], start=1):
+        if spec.world.complaint(spec.task, blocks, built, seen, spec.seed, sequence):
             return None
-    return memory
+        after = state_after(state.trial_id, spec, observations[: sequence + 1])
+        blocks, built = after.placements, after.built
+    return replace(memory, state=state_after(state.trial_id, spec, observations))
 
 
-def _drop(
-    memory: Memory, task: Task, state: WorldState, action: PlaceBlock
+def _carry_out(
+    memory: Memory, spec: TrialSpec, state: WorldState, action: PlaceBlock
 ) -> tuple[Memory, tuple[Message, ...]]:
-    block, column = action.placement
-    known = block in task.library
-    placed = rules.drop(task.board, state.built, action.placement) if known else None
-    if placed is None:
-        reason = (
-            f'block {block} in column {column} does not come to rest inside the board'
-            if known
-            else f'block {block} is not in the library {format_library(task.library)}'
+    sequence = state.sequence + 1
+    if sequence >= MAX_OBSERVATIONS:
+        failed = PlacementOutcome(
+            state.trial_id, state.sequence, None, TOO_MANY, PlacementCode.FAILED
         )
-        return memory, (PlacementOutcome(state.trial_id, state.sequence, None, reason),)
-    built = state.built | rules.cells_of(task.board, placed)
-    after = WorldState(
-        trial_id=state.trial_id,
-        sequence=state.sequence + 1,
-        built=built,
-        placements=(*state.placements, placed),
-        status=status_of(task, built),
+        return memory, (failed,)
+    try:
+        seen = spec.world.carry_out(spec.task, state.built, action.placement, spec.seed, sequence)
+    except ImpossibleOrder as error:
+        refused = PlacementCode.IMPOSSIBLE
+        return memory, (
+            PlacementOutcome(state.trial_id, state.sequence, None, str(error), refused),
+        )
+    after = state_after(state.trial_id, spec, (*state.observations, seen))
+    landed = seen.landed[0] if seen.landed else None
+    outcome = PlacementOutcome(
+        state.trial_id, state.sequence, landed, code=_code_of(seen, after.status)
     )
-    outcome = PlacementOutcome(state.trial_id, state.sequence, placed)
     return replace(memory, state=after), (outcome, after)
+
+
+def _code_of(seen: Observation, status: TrialStatus) -> PlacementCode:
+    """What became of the order that an observation is of."""
+    if status is TrialStatus.COLLAPSED:
+        return PlacementCode.COLLAPSED
+    if seen.is_as_ordered:
+        return PlacementCode.PLACED
+    return PlacementCode.SLIPPED if seen.landed else PlacementCode.LOST

@@ -63,7 +63,7 @@ def board_text(scene: Scene, scale: int = 1, signs: Signs = palette.UNICODE) -> 
     canvas: _Canvas = [
         [(' ', _PLAIN)] * (2 * scale * board.width) for _ in range(scale * board.height)
     ]
-    highlighted = Style(color=palette.colour_of(scene.record.subgoals - 1))
+    highlighted = Style(color=palette.colour_of(max(scene.record.subgoals - 1, 0)))
     for cells, sign, style in (
         (silhouette & ~scene.built, signs.target, _PLAIN),
         (scene.region, signs.region, highlighted),
@@ -94,8 +94,8 @@ def _paint(
 
 
 def _to_text(canvas: _Canvas, scale: int, scene: Scene, signs: Signs) -> Text:
-    """Put the labels and the ground to the cells; the height of the current region is bold."""
-    goal = None if scene.subgoal is None else scene.subgoal.height
+    """Put the labels and the ground to the cells; the top row of the current region is bold."""
+    goal = scene.top
     text = Text(no_wrap=True, overflow='crop')
     for line, cells in enumerate(canvas, start=1):
         row, above = divmod(len(canvas) - line, scale)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from math import inf
 from typing import Any
 
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.settings import described
 from blocks_planning.subgoals.decision import Candidate, Decision
+from blocks_planning.subgoals.regions import Region
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view import palette
@@ -57,6 +58,8 @@ def _with_settings(thing: Any) -> str:
 def _settings(thing: Any) -> Iterator[str]:
     for attribute, known in described(type(thing)):
         value = getattr(thing, attribute)
+        if known.family is not None:
+            value = value.name if value.name != known.default else known.default
         if isinstance(value, (int, float)) or value != known.default:
             text = f'{value:,}' if isinstance(value, int) else f'{value}'
             yield f'{known.name} {text}'
@@ -138,19 +141,45 @@ def numbers_of(candidate: Candidate) -> list[str]:
     ]
 
 
-NO_ROWS = '-'
-"""For the rows of a region that is not the rows below a height."""
+def common_kind(candidates: Sequence[Candidate]) -> str:
+    """The kind of all labels of some candidates; '' if there are several kinds, or none."""
+    kinds = {region.label.kind for candidate in candidates for region in candidate.regions}
+    return kinds.pop() if len(kinds) == 1 else ''
 
 
-def heights_of(candidate: Candidate, width: int, signs: Signs = palette.UNICODE) -> str:
-    """The heights of a candidate's regions in at most ``width`` characters, the last left out.
+def regions_of(
+    candidate: Candidate, width: int, signs: Signs = palette.UNICODE, kind: str = ''
+) -> str:
+    """The labels of a candidate's regions in at most ``width`` characters, the last left out.
 
-    >>> heights_of(Candidate((1, 3, 8), 9, 9, None, SolveStatus.SOLVED), width=4)
+    Args:
+        candidate: whose regions.
+        width: at most [characters].
+        signs: that can be shown.
+        kind: left out of labels, because a heading names it.
+
+    >>> from blocks_planning.subgoals.regions import Label
+    >>> rows = [Region(Label('rows', (height,)), 0) for height in (1, 3, 8)]
+    >>> regions_of(Candidate(tuple(rows), 9, 9, None, SolveStatus.SOLVED), width=10)
+    'rows 1 3 8'
+    >>> regions_of(Candidate(tuple(rows), 9, 9, None, SolveStatus.SOLVED), 4, kind='rows')
     '1 3…'
-    >>> heights_of(Candidate((), 9, 9, None, SolveStatus.SOLVED), width=4)
-    '-'
     """
-    text = ' '.join(map(str, candidate.heights)) or NO_ROWS
+    text = chain_text(candidate.regions, kind)
     if len(text) <= width:
         return text
     return text[:width].rpartition(' ')[0] + signs.more
+
+
+def chain_text(regions: Iterable[Region], kind: str = '') -> str:
+    """The labels of regions; a kind is named once for several regions in a row.
+
+    >>> from blocks_planning.subgoals.regions import Label
+    >>> chain_text([Region(Label('rows', (2,)), 0), Region(Label('rectangle', (0, 2, 3, 1)), 0)])
+    'rows 2 rectangle 0,2,3,1'
+    """
+    words: list[str] = []
+    for label, _ in regions:
+        words.append(str(label).removeprefix(f'{kind} ') if label.kind == kind else str(label))
+        kind = label.kind
+    return ' '.join(words)

@@ -20,6 +20,9 @@ from blocks_planning.view.scene import BuiltBlock
 COLOURS = ('#56b4e9', '#e69f00', '#009e73', '#d55e00', '#cc79a7', '#ccb800', '#0072b2')
 """One for each subgoal, over and over."""
 
+FOUND_COLOUR = '#9e9e9e'
+"""Of blocks that stood at the start, or appeared by themselves."""
+
 TINTS = (0.0, 0.4, -0.22, -0.42)
 """How far a tint leans towards white (1), or black (-1)."""
 
@@ -41,8 +44,8 @@ def blend(colour: str, share: float) -> str:
 
 
 def colour_of(subgoal: int) -> str:
-    """The colour of a subgoal, as '#rrggbb'."""
-    return COLOURS[subgoal % len(COLOURS)]
+    """The colour of a subgoal, as '#rrggbb'; grey for blocks that no subgoal placed."""
+    return COLOURS[subgoal % len(COLOURS)] if subgoal >= 0 else FOUND_COLOUR
 
 
 def ink_on(colour: str) -> str:
@@ -107,6 +110,7 @@ class Signs(NamedTuple):
         frames: of blocks; consecutive subgoals have different ones.
         target: a cell of the silhouette that is not filled.
         region: such a cell, if the current subgoal fills it.
+        halves: of a compact board: the upper half filled, the lower half, both.
         ground: below the board.
         marker: the candidate that was chosen.
         more: where something was left out.
@@ -116,6 +120,7 @@ class Signs(NamedTuple):
     frames: tuple[Frame, ...]
     target: str
     region: str
+    halves: str
     ground: str
     marker: str
     more: str
@@ -135,6 +140,7 @@ UNICODE = Signs(
     ),
     target='░',
     region='▒',
+    halves='▀▄█',
     ground='▔',
     marker='▶',
     more='…',
@@ -149,6 +155,7 @@ ASCII = Signs(
     ),
     target='.',
     region=':',
+    halves='^_#',
     ground='"',
     marker='>',
     more='~',

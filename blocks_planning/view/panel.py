@@ -66,7 +66,7 @@ def _activity(scene: Scene) -> str:
         return ''
     if scene.subgoal is None or not scene.region:
         return ', deciding'
-    return '' if scene.subgoal.height is None else f' rows {scene.subgoal.height}'
+    return f' {scene.label}'
 
 
 def _wrapped(label: str, text: str, width: int) -> list[Text]:
@@ -79,13 +79,16 @@ def _wrapped(label: str, text: str, width: int) -> list[Text]:
 def _lines_about(decision: Decision, width: int, height: int, signs: Signs) -> list[Text]:
     """A heading and a table of candidates, with a last line that counts what is left out."""
     total = len(decision.candidates)
-    room = max(height - 2, 1)
-    shown = captions.shortlist(decision, room if total <= room else max(room - 1, 1))
+    lines_left = max(height - 2, 1)
+    most = lines_left if total <= lines_left else max(lines_left - 1, 1)
+    shown = captions.shortlist(decision, most)
     candidates = [decision.candidates[index] for index in shown]
     numbers = [['r', 'c', 'V', 'status'], *map(captions.numbers_of, candidates)]
     widths = [max(map(len, column)) for column in zip(*numbers, strict=True)]
-    room_for_rows = max(width - sum(widths) - 2 * len(widths) - 2, 4)
-    rows = ['rows', *(captions.heights_of(one, room_for_rows, signs) for one in candidates)]
+    room = max(width - sum(widths) - 2 * len(widths) - 2, 4)
+    kind = captions.common_kind(decision.candidates)
+    regions = (captions.regions_of(one, room, signs, kind) for one in candidates)
+    rows = [kind or 'region', *regions]
     widest = max(map(len, rows))
     marks = [' ', *(signs.marker if index == decision.chosen else ' ' for index in shown)]
     lines = [Text(f'{captions.counted(total, "candidate")}: cells r, cost c, value V')]

@@ -12,19 +12,21 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
-from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.figure import Figure
-from PIL import Image
-
 from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.extras import extra
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.view import captions, palette
 from blocks_planning.view.outline import outline
 from blocks_planning.view.scene import Scene, last_scene, scenes_of
+
+with extra('figures'):
+    import matplotlib as mpl
+    from matplotlib.axes import Axes
+    from matplotlib.collections import LineCollection, PolyCollection
+    from matplotlib.figure import Figure
+    from PIL import Image
 
 CELL_INCHES = 0.5
 MIN_WIDTH_INCHES = 4.8
@@ -105,7 +107,7 @@ def draw_scene(axes: Axes, scene: Scene) -> None:
     board, silhouette = scene.task.board, scene.task.silhouette
     cell = _cell_points(axes, board)
     thin, thick = cell / 24, cell / 12
-    region = palette.blend(palette.colour_of(scene.record.subgoals - 1), REGION_SHARE)
+    region = palette.blend(palette.colour_of(max(scene.record.subgoals - 1, 0)), REGION_SHARE)
     for cells, colour in (silhouette & ~scene.built, TARGET), (scene.region, region):
         squares = [Placed(1, 1, *square) for square in board.cells(cells)]
         _add_rectangles(axes, squares, [colour] * len(squares), GRID, thin)
@@ -228,7 +230,7 @@ def _colours(record: TrialRecord) -> Image.Image:
     scenes = list(scenes_of(record))
     colours = set(palette.fills_of(scenes[-1].blocks))
     colours |= {
-        palette.blend(palette.colour_of(scene.record.subgoals - 1), REGION_SHARE)
+        palette.blend(palette.colour_of(max(scene.record.subgoals - 1, 0)), REGION_SHARE)
         for scene in scenes
     }
     greys = {f'#{level:02x}{level:02x}{level:02x}' for level in (*range(0, 256, 17), 0xE4)}

@@ -1,7 +1,7 @@
 """A scene in space: boxes, lines and words, for viewers of robots such as RViz and Foxglove.
 
 All lengths are in cells. The tower stands in the x-z plane: columns go along +x, rows along +z, and
-it is one cell deep along +y, so that who looks along +y sees the board as it is drawn elsewhere.
+it is one cell deep along +y, so that a view along +y shows the board as it is drawn elsewhere.
 The lower left corner of cell (0, 0) is the origin.
 """
 
@@ -149,7 +149,7 @@ def _region(scene: Scene) -> Iterator[Boxes]:
     cells = scene.task.board.cells(scene.region)
     centres = tuple((column + 0.5, 0.5, row + 0.5) for column, row in cells)
     if centres:
-        colour = palette.colour_of(scene.record.subgoals - 1)
+        colour = palette.colour_of(max(scene.record.subgoals - 1, 0))
         side = 1 - 2 * GAP
         yield Boxes('region', 0, colour, centres, (side, side, side), REGION_OPACITY)
 
@@ -174,6 +174,5 @@ def _words(scene: Scene) -> Iterator[Words]:
 
 
 def _are_costs_hidden(scene: Scene) -> bool:
-    """Whether the person who scopes must not see yet what was evaluated."""
-    hidden = getattr(scene.spec.strategy, 'costs', 'shown') == 'hidden'
-    return hidden and scene.status is TrialStatus.BUILDING
+    """Whether planning costs must not be seen yet."""
+    return scene.spec.strategy.hides_costs and scene.status is TrialStatus.BUILDING

@@ -8,15 +8,20 @@ from statistics import fmean
 from typing import Literal
 
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from blocks_planning.subgoals.human import Human
+from blocks_planning.settings import settings_of
 from blocks_planning.subgoals.proposals import ProposalKind
 from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.spec import FAMILIES, TrialSpec
 from blocks_planning.trials.status import TrialStatus
+from blocks_planning.view.names import broken
 
+_NUMBERS_OF_PROPOSALS = 50
+"""Width of the columns of numbers in the table of proposals [characters]."""
 _COLUMNS = ('blocks', 'subgoals', 'action cost', 'subgoal cost', 'solution cost')
 
 
@@ -50,25 +55,26 @@ def print_summary(records: Sequence[TrialRecord], console: Console | None = None
         max(len(text) for text in (*title.split(), *(row[index] for row in rows)))
         for index, title in enumerate(titles, start=1)
     ]
-    longest = max(len(text) for text in ('stimulus', *(row[0] for row in rows)))
+    longest = max(cell_len(text) for text in ('stimulus', *(row[0] for row in rows)))
     room = console.width - sum(widths) - 2 * (len(titles) + 1) - 1
-    table.add_column('stimulus', overflow='fold', width=max(8, min(longest, room)))
-    for title, width in zip(titles, widths, strict=True):
+    width = max(8, min(longest, room))
+    table.add_column('stimulus', overflow='fold', width=width)
+    for title, size in zip(titles, widths, strict=True):
         justify: Literal['left', 'right'] = 'right' if title in _COLUMNS else 'left'
-        table.add_column(title, justify=justify, width=width)
+        table.add_column(title, justify=justify, width=size)
     for stimulus, *rest in rows:
-        table.add_row(Text(stimulus), *rest)
+        table.add_row(Text(broken(stimulus, width)), *rest)
     console.print(_planner(records[0]), highlight=False)
     console.print(table)
 
 
 def print_proposals(records: Sequence[TrialRecord], console: Console | None = None) -> None:
-    """Print what a person did in each trial in which one scoped; nothing if there is none.
+    """Print the proposals of each trial in which a person scoped; nothing if there is none.
 
-    Thinking is what passed before each proposal, also before those that were withdrawn [s].
+    Thinking time is the time before each proposal, withdrawn ones included [s].
     """
     table = Table(
-        title='What was proposed; thinking in seconds, in all and each time',
+        title='Proposals; thinking time in seconds, total and mean',
         title_justify='left',
         title_style='',
         box=box.SIMPLE_HEAD,
@@ -78,17 +84,19 @@ def print_proposals(records: Sequence[TrialRecord], console: Console | None = No
     table.add_column('stimulus', overflow='fold')
     for title in ('proposed', 'built', 'withdrawn', 'thinking', 'each'):
         table.add_column(title, justify='right', no_wrap=True)
+    console = console or Console()
+    room = max(8, (console.width - _NUMBERS_OF_PROPOSALS) // 2)
     for record in records:
-        strategy = record.spec.strategy
-        if isinstance(strategy, Human):
-            row = [strategy.participant, record.spec.stimulus, *_proposed(record)]
-            table.add_row(*map(Text, row))
+        if record.spec.strategy.asks_person:
+            participant = str(settings_of(record.spec.strategy).get('participant', ''))
+            names = (broken(name, room) for name in (participant, record.spec.stimulus))
+            table.add_row(*map(Text, [*names, *_proposed(record)]))
     if table.row_count:
-        (console or Console()).print(table)
+        console.print(table)
 
 
 def _proposed(record: TrialRecord) -> list[str]:
-    """How many regions were to be built, were built, were let go; and how long that took."""
+    """Counts of regions proposed, built and withdrawn; and the thinking time."""
     kinds = [proposal.kind for proposal in record.proposals]
     seconds = [proposal.thinking_s for proposal in record.proposals]
     return [
@@ -101,12 +109,14 @@ def _proposed(record: TrialRecord) -> list[str]:
 
 
 def _planner(record: TrialRecord) -> str:
-    """Who planned, with all settings."""
-    spec = record.spec.to_json()
-    keys = ('strategy', 'lambda', 'commit', 'search')
-    planner = ', '.join(f'{key} {spec[key]}' for key in keys if spec[key] is not None)
-    settings = ', '.join(f'{key} {value}' for key, value in spec['search_settings'].items())
-    return f'{planner} ({settings})' if settings else planner
+    """Strategy, search and world with all their settings."""
+    return ', '.join(_member(name, record.spec) for name in FAMILIES)
+
+
+def _member(family: str, spec: TrialSpec) -> str:
+    chosen = getattr(spec, family)
+    values = ', '.join(f'{key} {value}' for key, value in settings_of(chosen).items())
+    return f'{family} {chosen.name}' + (f' ({values})' if values else '')
 
 
 def _row(group: list[TrialRecord], single: bool) -> list[str]:

@@ -17,12 +17,15 @@ from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.view import palette
 from blocks_planning.view.board import board_text, scale_for, size_at
 from blocks_planning.view.captions import outcome_of
+from blocks_planning.view.compact import compact_size, compact_text
 from blocks_planning.view.palette import Signs
 from blocks_planning.view.panel import MIN_WIDTH, panel
 from blocks_planning.view.scene import Scene, last_scene, scene_after, scene_of
 
 GAP = 3
 """Between board and panel [characters]."""
+PANEL_LINES = 8
+"""Lines of the panel without a decision, where no setting needs a line of its own."""
 ROOM = 2
 """Lines below the frame for the cursor and for what is printed next."""
 PATIENCE_S = 0.02
@@ -55,21 +58,28 @@ def print_outcome(record: TrialRecord, console: Console) -> None:
     """Print the last picture of a trial, and a line on how it ended."""
     scene = last_scene(record)
     board = scene.task.board
-    scale = min(scale_for(board, console.width, 1 << 10), 2)
+    scale = min(scale_for(board, console.width, console.height - ROOM), 2)
     signs = signs_for(console)
-    for text in board_text(scene, scale, signs), Text(outcome_of(scene, signs)):
+    fits = size_at(board, scale)[0] <= console.width
+    picture = board_text(scene, scale, signs) if fits else compact_text(scene, signs)
+    for text in picture, Text(outcome_of(scene, signs)):
         console.print(text, soft_wrap=True)
 
 
 def frame(scene: Scene, width: int, height: int, signs: Signs = palette.UNICODE) -> Table:
     """A scene's board and panel, beside each other or, if that is too wide, on one another.
 
-    The board is drawn as large as ``width`` x ``height`` characters allow.
+    The board is drawn as large as ``width`` x ``height`` characters allow; in its compact form if
+    nothing else leaves room for it and for ``PANEL_LINES`` lines of the panel. If that is too
+    large too, its lowest rows are drawn, and a line says what size would do.
     """
     board = scene.task.board
     scale = scale_for(board, width - GAP - MIN_WIDTH, height)
     wide, high = size_at(board, scale)
     picture = board_text(scene, scale, signs)
+    if not _fits(wide, high, width, height):
+        wide, high = compact_size(board)
+        picture = _lowest_lines(compact_text(scene, signs), wide, high, width, height)
     grid = Table.grid(padding=(0, GAP, 0, 0))
     if width - GAP - wide >= MIN_WIDTH:
         grid.add_row(picture, panel(scene, width - GAP - wide, height, signs))
@@ -78,6 +88,22 @@ def frame(scene: Scene, width: int, height: int, signs: Signs = palette.UNICODE)
         if height > high:
             grid.add_row(panel(scene, width, height - high, signs))
     return grid
+
+
+def _fits(wide: int, high: int, width: int, height: int) -> bool:
+    """Whether there is room for a board and the most important lines of the panel."""
+    if width - GAP - wide >= MIN_WIDTH:
+        return high <= height
+    return wide <= width and high + PANEL_LINES <= height
+
+
+def _lowest_lines(picture: Text, wide: int, high: int, width: int, height: int) -> Text:
+    """A picture of ``wide`` x ``high`` characters, without what does not fit; if so, it says so."""
+    if high <= height and wide <= width:
+        return picture
+    note = Text(f'too small: needs {wide} x {high + ROOM}')
+    kept = picture.split('\n')[-max(height - 1, 0) :] if height > 1 else []
+    return Text('\n', no_wrap=True, overflow='crop').join([note, *kept])
 
 
 def signs_for(console: Console) -> Signs:

@@ -8,7 +8,7 @@ from blocks_planning.ros.wire import qos
 
 
 class MySearcher(rclpy.node.Node):
-    """Fills regions, and sends the placements of the subgoal that was chosen."""
+    """Fills targets, and orders the placements of the subgoal that was chosen."""
 
     def __init__(self):
         super().__init__('my_searcher')
@@ -24,37 +24,42 @@ class MySearcher(rclpy.node.Node):
         self.create_subscription(msg.SearchRequest, 'search/request', self.search, qos.stream())
 
     def search(self, asked):
-        """Answer what filling a region takes; cells are (row, column) here."""
-        self.seen, width = set(), asked.region.width
-        built, region = (
+        """Answer each query of a request."""
+        for query in asked.queries:
+            self.answer(asked.trial_id, query)
+
+    def answer(self, trial_id, query):
+        """Answer what filling a target takes; cells are (row, column) here."""
+        self.seen, width = set(), query.target.width
+        built, target = (
             {divmod(index, width) for index, cell in enumerate(grid.cells) if cell}
-            for grid in (asked.built, asked.region)
+            for grid in (query.built, query.target)
         )
-        plan = self.fill(frozenset(built), region)
-        answer = msg.SearchResult(trial_id=asked.trial_id, built=asked.built, region=asked.region)
+        plan = self.fill(frozenset(built), target)
+        answer = msg.SearchResult(trial_id=trial_id, query=query)
         answer.status = 'unsolvable_proven' if plan is None else 'solved'
         answer.placements, answer.attempts = plan or [], 1
         answer.planning_cost = len(self.seen)
         answer.solution_cost = 0 if plan is None else answer.planning_cost
         self.result.publish(answer)
 
-    def fill(self, built, region):
-        """Return placements that fill a region, or None."""
-        if built == region or built in self.seen:
-            return [] if built == region else None
+    def fill(self, built, target):
+        """Return placements that fill a target, or None."""
+        if built == target or built in self.seen:
+            return [] if built == target else None
         self.seen.add(built)
-        row, left = min(region - built)  # the lowest empty cell: nothing may cover it later
+        row, left = min(target - built)  # the lowest empty cell: nothing may cover it later
         for block in sorted(self.trial.library, key=lambda block: -block.width * block.height):
             cells = {(row + y, left + x) for y in range(block.height) for x in range(block.width)}
             rests = row == 0 or any((row - 1, c) in built for _, c in cells)
-            if rests and cells <= region - built:
-                rest = self.fill(built | cells, region)
+            if rests and cells <= target - built:
+                rest = self.fill(built | cells, target)
                 if rest is not None:
                     return [msg.Placement(block=block, column=left, row=row), *rest]
         return None
 
     def act(self, state, subgoal):
-        """Send the placement that the state calls for."""
+        """Order the next placement. This holds in a world that carries out every order."""
         self.state, self.subgoal = state, subgoal
         trials = {getattr(said, 'trial_id', None) for said in (state, subgoal, self.trial)}
         if len(trials) > 1 or not subgoal.decisions[-1].subgoals:
@@ -62,9 +67,9 @@ class MySearcher(rclpy.node.Node):
         chosen = subgoal.decisions[-1].subgoals[subgoal.decisions[-1].executed - 1]
         done = state.sequence - subgoal.sequence
         if 0 <= done < chosen.execute:
-            block, column = chosen.placements[done].block, chosen.placements[done].column
             action = msg.PlaceBlock(trial_id=state.trial_id, sequence=state.sequence)
-            action.block, action.column = block, column
+            placement = chosen.placements[done]
+            action.block, action.column = placement.block, placement.column
             self.action.publish(action)
 
 

@@ -11,6 +11,7 @@ from blocks_planning.analysis.bootstrap import (
     bootstrap_difference,
     bootstrap_mean,
     draw,
+    paper_p,
     pearson,
 )
 from blocks_planning.analysis.people import spearman
@@ -57,7 +58,7 @@ def test_share_of_successes_is_binomial() -> None:
     groups = [np.repeat([0.0, 1.0], [3, 1])] * 16
     found = bootstrap_mean(groups, rng(), MANY)
     low, high = stats.binom(16, 0.25).interval(0.95)
-    assert found == (0.25, low / 16, high / 16)
+    assert found[:3] == (0.25, low / 16, high / 16)
 
 
 def test_mean_agrees_with_scipy() -> None:
@@ -73,7 +74,7 @@ def test_mean_agrees_with_scipy() -> None:
 
 def test_groups_without_values_take_no_part() -> None:
     some = made(3)
-    assert bootstrap_mean([*some, np.empty(0)], rng()) == bootstrap_mean(some, rng())
+    assert bootstrap_mean([*some, np.empty(0)], rng())[:3] == bootstrap_mean(some, rng())[:3]
     assert np.isnan(bootstrap_mean([np.empty(0)], rng()).mean)
 
 
@@ -89,7 +90,7 @@ def test_difference_is_paired() -> None:
 def test_difference_needs_both_of_a_pair() -> None:
     a, b = np.array([1.0]), np.array([5.0])
     none = np.empty(0)
-    assert bootstrap_difference([a, a, none], [b, none, b], rng()) == (-4.0, -4.0, -4.0)
+    assert bootstrap_difference([a, a, none], [b, none, b], rng()) == (-4, -4, -4, 0)
 
 
 def test_pearson_is_that_of_scipy() -> None:
@@ -103,7 +104,8 @@ def test_correlation_of_certain_values_is_certain() -> None:
     levels = np.linspace(0, 1, 10)
     groups = [[np.array([level**2 + unit]) for unit in range(4)] for level in levels]
     found = bootstrap_correlation(levels, groups, rng())
-    assert found == pytest.approx([stats.pearsonr(levels, levels**2).statistic] * 3)
+    assert found[:3] == pytest.approx([stats.pearsonr(levels, levels**2).statistic] * 3)
+    assert found.p == 0
 
 
 def test_correlation_has_the_distribution_of_drawn_means() -> None:
@@ -122,8 +124,41 @@ def test_correlation_is_nan_where_nothing_varies() -> None:
     assert np.isnan(bootstrap_correlation(levels, [[np.ones(4)]] * 3, rng()).mean)
 
 
+def test_draws_in_which_nothing_varies_are_left_out() -> None:
+    """Of one silhouette with 0 or 1 at the last level, half of the draws have a correlation."""
+    groups = [[np.zeros(1)], [np.zeros(1)], [np.array([0.0, 1.0])]]
+    found = bootstrap_correlation(np.arange(3.0), groups, rng())
+    assert found[:3] == pytest.approx([stats.pearsonr([0, 1, 2], [0, 0, 1]).statistic] * 3)
+
+
+@pytest.mark.parametrize(
+    ('distribution', 'mean', 'p'),
+    [
+        # Ten iterations, by hand: the share on the other side of 0, halved.
+        ([1, 1, 1, 1, 1, 1, 1, 1, -1, -1], 0.6, 0.1),
+        ([-1, -1, -1, -1, -1, -1, -1, -1, 1, 1], -0.6, 0.1),
+        # As in the published analysis 0 counts against a negative effect, and not against a
+        # positive one.
+        ([1, 1, 1, 1, 1, 1, 1, 1, 0, 0], 0.8, 0.0),
+        ([-1, -1, -1, -1, -1, -1, -1, -1, 0, 0], -0.8, 0.1),
+        ([0] * 10, 0, 0.5),
+        ([2] * 10, 2, 0.0),
+    ],
+)
+def test_p_is_that_of_the_published_analysis(
+    distribution: list[float], mean: float, p: float
+) -> None:
+    assert paper_p(np.array(distribution, float), mean) == pytest.approx(p)
+
+
+def test_levels_have_no_p() -> None:
+    assert bootstrap_mean(made(), rng()).to_json()['p'] is None
+    shifted = [group + 1 for group in made(seed=2)]
+    assert bootstrap_difference(shifted, made(seed=2), rng()).p < 0.05
+
+
 def test_generator_is_the_only_source_of_chance() -> None:
-    assert bootstrap_mean(made(), rng()) == bootstrap_mean(made(), rng())
+    assert bootstrap_mean(made(), rng())[:3] == bootstrap_mean(made(), rng())[:3]
 
 
 def test_spearman_is_that_of_scipy() -> None:

@@ -72,7 +72,14 @@ def test_sweep_with_a_failed_trial_exits_with_1(folder: Path) -> None:
         (['sweep', 'bad.yaml', '--out', 'x'], "bad.yaml, line 4, key 'sedes': is not a key here"),
         (['sweep', 'sweep.yaml', '--out', 'towers.txt'], '--out towers.txt: File exists'),
         (['exact-policy', 'towers.txt/a', '--search', 'random', '--depth', '2'], 'has no setting'),
-        (['exact-policy', 'cogsci2021/2', '--limit', '9'], 'more than the limit of 9 states'),
+        (
+            ['exact-policy', 'cogsci2021/2', '--slip', '0.1', '--limit', '9'],
+            'more than the limit of 9 states',
+        ),
+        (
+            ['exact-policy', 'towers.txt', '--slip', '1.5'],
+            'slip must be a number from 0 to 1, got 1.5',
+        ),
     ],
 )
 def test_bad_input_is_one_line(folder: Path, words: list[str], error: str) -> None:
@@ -95,6 +102,42 @@ def test_exact_policy(folder: Path) -> None:
     assert 0 < second['success'] < 1
     said = run(folder, *words).stdout
     assert f'succeeds with probability {second["success"]:.6g}' in said
+
+
+def test_exact_policy_where_blocks_slip(folder: Path) -> None:
+    words = ['exact-policy', 'towers.txt', '--library', '1x2,2x1', '--slip', '0', '--slip', '0.2']
+    rows = [json.loads(line) for line in run(folder, *words, '--json').stdout.splitlines()]
+    assert [(row['stimulus'], row['slip']) for row in rows] == [
+        (f'towers.txt/{name}', slip) for name in 'ab' for slip in (0.0, 0.2)
+    ]
+    assert [row['optimum'] for row in rows[::2]] == [1.0, 1.0]
+    for row in rows[1::2]:
+        assert 1 > row['optimum'] >= row['bfs'] > 0
+        assert row['optimum'] > row['random'] > 0
+    said = run(folder, *words).stdout.splitlines()
+    assert len(said) == 4
+    for line, row in zip(said, rows, strict=True):
+        assert line.startswith(f'{row["stimulus"]}: slip {row["slip"]:g}: best possible')
+        assert f'best possible {row["optimum"]:.6g}, bfs {row["bfs"]:.6g}, random ' in line
+
+
+def test_exact_policy_where_blocks_slip_compares_all_policies(folder: Path) -> None:
+    for words in (['--search', 'bfs'], ['--budget', '9']):
+        done = run(folder, 'exact-policy', 'towers.txt', '--slip', '0.1', *words)
+        assert done.returncode == 2
+        assert f'leave out {words[0]}' in done.stderr
+
+
+def test_a_tower_over_the_limit_of_states_is_reported_in_its_row(folder: Path) -> None:
+    words = ['exact-policy', 'cogsci2021/2', 'towers.txt/a', '--limit', '9']
+    done = run(folder, *words, '--json')
+    assert (done.returncode, done.stderr) == (3, '')
+    first, second = map(json.loads, done.stdout.splitlines())
+    assert 'more than the limit of 9 states' in first['problem']
+    assert second['success'] == pytest.approx(1.0)
+    first, second = run(folder, *words).stdout.splitlines()
+    assert 'cogsci2021/2: exact-policy: bfs can reach more than the limit of 9' in first
+    assert 'towers.txt/a: one attempt succeeds' in second
 
 
 def test_limit_that_is_shown_is_the_one_that_holds(folder: Path) -> None:

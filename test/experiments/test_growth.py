@@ -43,13 +43,31 @@ def test_sizes() -> None:
 def test_fits_find_the_law() -> None:
     sides = np.array([4.0, 6, 8, 12, 16])
     doubling = fit(sides, 3 * 2**sides)
+    assert doubling is not None
     assert doubling.law == 'exponential'
     assert doubling.base == pytest.approx(2)
     assert doubling.at(np.array([5.0])) == pytest.approx([96])
     cubic = fit(sides, 7 * sides**3)
+    assert cubic is not None
     assert cubic.law == 'power'
     assert cubic.base == pytest.approx(3)
     assert cubic.r2 == pytest.approx(1)
+
+
+@pytest.mark.parametrize(
+    ('sides', 'costs'),
+    [([4, 6], [3, 9]), ([4, 6, 8], [3, 0, 9]), ([4, 4, 6, 6], [3, 4, 8, 9]), ([], [])],
+)
+def test_no_law_is_fitted_to_fewer_than_three_sizes(sides: list[int], costs: list[int]) -> None:
+    assert fit(np.array(sides, float), np.array(costs, float)) is None
+
+
+def test_too_few_sizes_are_refused_before_anything_runs(tmp_path: Path) -> None:
+    command = [sys.executable, '-m', 'blocks_planning.cli', 'growth', '--out', str(tmp_path / 'x')]
+    done = subprocess.run([*command, '--largest', '7'], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert '--largest 7: leaves the sizes 4, 6, and a law needs at least 3' in done.stderr
+    assert not (tmp_path / 'x').exists()
 
 
 def test_command_writes_table_and_figure(tmp_path: Path) -> None:

@@ -71,7 +71,7 @@ def test_more_seeds_keep_the_chunks_there_are(tmp_path: Path) -> None:
     assert {c.chunk_id for c in few.chunks()} < {c.chunk_id for c in many.chunks()}
 
 
-@pytest.mark.parametrize('name', ['paper', 'paper_quick'])
+@pytest.mark.parametrize('name', ['paper', 'paper_quick', 'beyond'])
 def test_sweeps_of_the_package_can_be_read(name: str) -> None:
     assert read_sweep(find_sweep(name)).chunks()
 

@@ -15,7 +15,7 @@ from blocks_planning.experiments import running, sweeping, working
 from blocks_planning.experiments.spec import Chunk
 from blocks_planning.experiments.store import Store, read_table
 from blocks_planning.experiments.sweeping import run_sweep
-from blocks_planning.experiments.tables import SCHEMAS, Tables
+from blocks_planning.experiments.tables import Tables, schemas
 from blocks_planning.search.searches import BreadthFirst, Exact
 from blocks_planning.search.solve import solve
 from blocks_planning.trials.local import run_trial
@@ -43,7 +43,8 @@ def test_tables_say_what_the_records_say(whole: dict[str, pa.Table]) -> None:
         assert {key: row[key] for key in row if key in said} == {
             key: said[key] for key in said if key in row
         }
-        assert {key: row[key] for key in said['search_settings']} == said['search_settings']
+        for settings in (said['search_settings'], said['strategy_settings']):
+            assert {key: row[key] for key in settings} == settings
         mine = [r for r in decisions if r['trial_id'] == trial_id]
         assert [r['built'] for r in mine] == [d['built'] for d in said['decisions']]
         assert [r['subgoal_planning_cost'] for r in mine] == [
@@ -60,7 +61,7 @@ def test_tables_say_what_the_records_say(whole: dict[str, pa.Table]) -> None:
 
 
 def test_schemas(whole: dict[str, pa.Table]) -> None:
-    for name, schema in SCHEMAS._asdict().items():
+    for name, schema in schemas()._asdict().items():
         assert whole[name].schema.equals(schema)
 
 

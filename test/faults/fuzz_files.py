@@ -31,7 +31,7 @@ from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 from source_imports import ROOT
 
-from blocks_planning.board.stimuli import read_file
+from blocks_planning.board.pictures import read_file
 from blocks_planning.cli import main as command
 from blocks_planning.errors import BlocksPlanningError
 from blocks_planning.experiments.reading import read_sweep
@@ -101,7 +101,9 @@ def kinds(folder: Path) -> list[Kind]:
     bag = write_bag(
         folder / 'bag', [one for seed in (0, 1) for one in trial_said(spec(CHAIR, seed=seed))[1]]
     )
-    journal = b'blocks_planning/journal 1\n2 1 0 0\n1 2 3 0\n2 2 1 1\n'
+    journal = (
+        b'blocks_planning/journal 2\n2 1 0;2 1 0 0;\n1 2 3;;\n2 2 1;2 2 0 1;2 1 0 0,1 1 1 0\n'
+    )
     lines = [
         record(tower, strategy=name).to_line()
         for tower in (SQUARE, CHAIR)

@@ -18,9 +18,9 @@ from faults.plan import BRINGUP, Fault, make_plan
 from faults.report import Report
 from faults.subject import Observer, Subject, send
 
-RECOVERY_BOUND_S = 60.0
+RECOVERY_BOUND_S = 120.0
 STOP_BOUND_S = 6.0
-SECOND_RUN_BOUND_S = 60.0
+SECOND_RUN_BOUND_S = 180.0
 _PHASE_BOUND_S = 2.0
 _FILE_LOOK_S = 0.03
 _TRIGGERS = {'idle': 'outcome', 'searching': 'search/request', 'placing': 'action'}
@@ -62,6 +62,7 @@ class Harness:
         self._graph = Graph()
         self._observer = self._graph.add(Observer)
         self._subject: Subject
+        self._start_s = 1.0
 
     def run(self, per_script: int = 32, say: Callable[[str], None] = lambda _: None) -> Report:
         """Run scripts of so many trials until all kills are done and there were enough trials.
@@ -102,8 +103,11 @@ class Harness:
 
     def _run_script(self, script: Path, out: Path) -> None:
         self._subject = subject = Subject(script, out, self._graph.namespace, self._pace_s)
+        begun, progress = time.monotonic(), self._observer.progress
         subject.start()
         try:
+            self._spin(lambda: self._observer.progress > progress, RECOVERY_BOUND_S)
+            self._start_s = time.monotonic() - begun
             while self._next is not None:
                 self._do(self._next)
                 self._next = next(self._plan, None)
@@ -217,7 +221,9 @@ class Harness:
         if fault.phase == 'journal':
             journal = subject.journal_size()
             self._poll(lambda: subject.journal_size() != journal, self._pace_s + _FILE_LOOK_S)
-        if fault.phase in ('any', 'starting'):
+        if fault.phase == 'starting':
+            self._spin(lambda: False, fault.delay_s * self._start_s)
+        elif fault.phase == 'any':
             self._spin(lambda: False, fault.delay_s)
         elif fault.delay_s:
             time.sleep(fault.delay_s)
@@ -238,8 +244,9 @@ class Harness:
         self.report.recoveries.append((time.monotonic() - killed, fault))
 
     def _expect(self, condition: Callable[[], bool], fault: Fault) -> None:
-        if not self._spin(condition, RECOVERY_BOUND_S):
-            self._complain(f'no recovery in {RECOVERY_BOUND_S} s from {fault}')
+        bound_s = max(RECOVERY_BOUND_S, 20 * self._start_s)
+        if not self._spin(condition, bound_s):
+            self._complain(f'no recovery in {bound_s:.0f} s from {fault}')
             raise _Over
 
     def _spin(self, condition: Callable[[], bool], seconds: float) -> bool:

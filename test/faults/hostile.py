@@ -77,7 +77,7 @@ class Hostile:
         with suppress(InvalidInput):
             message = read_message(topic.ros_type, data)
             if topic is TRIAL:
-                self._specs.setdefault(message.trial_id, topic.from_ros(message).spec)
+                self._specs.setdefault(message.trial_id, topic.from_ros(None, message).spec)
             if topic is STATE and message.trial_id in self._specs:
                 topic.from_ros(self._specs[message.trial_id].task.board, message)
                 known = self._sequences.get(message.trial_id, 0)
@@ -103,7 +103,11 @@ class Hostile:
             return None
         trial = read_message(TRIAL.ros_type, self.chance.choice(trials))
         if self.chance.random() < 0.5:
-            end = OUTCOME.ros_type(trial_id=list(self._specs)[-1], status='cancelled')
+            end = OUTCOME.ros_type(
+                trial_id=list(self._specs)[-1],
+                status='cancelled',
+                code=OUTCOME.ros_type.CODE_CANCELLED,
+            )
             return Captured(OUTCOME, serialize_message(end))
         trial.trial_id = f'foreign/{self.chance.randrange(10**9)}'
         return Captured(TRIAL, serialize_message(trial))
@@ -124,10 +128,10 @@ class Hostile:
         try:
             message = read_message(topic.ros_type, data)
             if topic is TRIAL:
-                topic.from_ros(message)
+                topic.from_ros(None, message)
                 return data not in list(self._heard[TRIAL])[-1:]
             if topic is OUTCOME:
-                topic.from_ros(message)
+                topic.from_ros(None, message)
                 return message.trial_id in self._specs
             spec = self._specs.get(message.trial_id)
             if spec is None or topic not in (ACTION, PROPOSAL, SEARCH_RESULT, STATE, SUBGOAL):

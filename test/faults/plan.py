@@ -32,7 +32,7 @@ class Fault(NamedTuple):
             copy: a second one is started.
         node: whose process.
         phase: in which it happens.
-        delay_s: after what the phase begins with [s].
+        delay_s: after what the phase begins with [s]; for starting, in start times of a node.
         hold_s: how long a pause, or a late start, takes [s].
         at_once: whether it comes before the node has recovered from the last fault.
     """
@@ -77,7 +77,7 @@ def make_plan(seed: int, kills: int) -> Iterator[Fault]:
         if phase == 'any':
             fault = fault._replace(delay_s=chance.uniform(0.0, 0.5))
         if phase == 'starting':
-            fault = fault._replace(delay_s=chance.uniform(0.0, 1.5))
+            fault = fault._replace(delay_s=chance.uniform(0.0, 1.2))
         if kind not in ('kill', 'late'):
             pairs.append((node, phase))  # it has still to be killed then
         yield fault

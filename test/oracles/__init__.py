@@ -7,6 +7,8 @@ imported from the package under test. Only the standard library is used.
 * ``randomness``: the generator every draw comes from
 * ``board``: how blocks fall, which placements are possible and legal
 * ``search``: one attempt of random, bfs, astar or best_first
+* ``slipping``: success where blocks slip, of the best orders, bfs and random
+* ``statics``: whether loose blocks stand
 * ``exact``: fewest blocks and number of complete arrangements, in two independent ways
 * ``planners``: solve (attempts and budget), none, scoping, full
 """

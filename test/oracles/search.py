@@ -1,4 +1,5 @@
-"""Action-level search, word by word: random, bfs, astar, best_first, and one attempt of each.
+"""Action-level search, word by word: random, bfs, astar, best_first, beam, mcts, and an
+attempt of each.
 
 The cost of a search is its number of states evaluated: every child state generated, counted as
 often as it is generated.
@@ -72,9 +73,17 @@ def random_choice(task: Task, state: Cells, generator: Generator) -> Choice:
     return Choice((placements[generator.below(len(placements))],), 0)
 
 
-def bfs_choice(task: Task, state: Cells, generator: Generator, *, depth: int) -> Choice:
-    """Breadth-first lookahead of `depth` levels (at least 1)."""
+def bfs_choice(
+    task: Task, state: Cells, generator: Generator, *, depth: int, dead_ends: str = 'worst'
+) -> Choice:
+    """Breadth-first lookahead of `depth` levels (at least 1).
+
+    dead_ends: 'worst' to rank a state without a legal placement last, 'ignored' to rank every
+    state by the cells filled alone.
+    """
     check_at_least('depth', depth, 1)
+    if dead_ends not in ('worst', 'ignored'):
+        raise ValueError(f"dead_ends must be 'worst' or 'ignored', got {dead_ends!r}")
     generated: list[Node] = []
     level = [Node(state, ())]
     for _ in range(depth):
@@ -86,19 +95,27 @@ def bfs_choice(task: Task, state: Cells, generator: Generator, *, depth: int) ->
             generated.extend(new)
             next_level.extend(new)
         level = next_level
-    best = best_nodes(task, generated)
+    worth = worth_with_dead_ends_last if dead_ends == 'worst' else cells_filled
+    best = best_nodes(task, generated, worth)
     chosen = best[generator.below(len(best))]
     return Choice(chosen.path[:1], len(generated))
 
 
-def best_nodes(task: Task, nodes: Sequence[Node]) -> list[Node]:
+def best_nodes(
+    task: Task, nodes: Sequence[Node], worth: Callable[[Task, Cells], float]
+) -> list[Node]:
     """The nodes of highest worth, in the order they came."""
     worths = [worth(task, node.state) for node in nodes]
     best = max(worths)
     return [node for node, value in zip(nodes, worths, strict=True) if value == best]
 
 
-def worth(task: Task, state: Cells) -> float:
+def cells_filled(task: Task, state: Cells) -> float:
+    """How bfs judges a state if it ignores dead ends; a complete state has all cells filled."""
+    return len(state)
+
+
+def worth_with_dead_ends_last(task: Task, state: Cells) -> float:
     """How bfs judges a state: complete is best, a dead end worst, else the cells filled."""
     if state == task.region:
         return math.inf
@@ -227,11 +244,123 @@ def check_at_least(name: str, value: int, least: int) -> None:
         raise ValueError(f'{name} must be at least {least}, got {value}')
 
 
+def beam_choice(task: Task, state: Cells, generator: Generator, *, width: int) -> Choice:
+    """Beam search; the path to the best state seen.
+
+    Of states with equally many cells at the edge of the beam, each in turn is kept if a number
+    below those that are left is below the places that are left; no number is drawn once no place
+    is left, or if there is a place for each.
+    """
+    check_at_least('width', width, 1)
+    level = [Node(state, ())]
+    kept = list(level)
+    cost = 0
+    while not any(node.state == task.region for node in level):
+        generated = [child for node in level for child in children(task, node)]
+        if not generated:
+            break
+        cost += len(generated)
+        level = keep_best(generated, width, generator)
+        kept.extend(level)
+    best = best_nodes(task, kept, cells_filled)
+    return Choice(best[generator.below(len(best))].path, cost)
+
+
+def keep_best(nodes: Sequence[Node], width: int, generator: Generator) -> list[Node]:
+    """The `width` nodes with most cells, in the order they came; ties uniformly."""
+    sizes = sorted((len(node.state) for node in nodes), reverse=True)
+    edge = sizes[:width][-1]
+    places = width - sum(size > edge for size in sizes)
+    left = sum(size == edge for size in sizes)
+    everyone = left <= places
+    kept = []
+    for node in nodes:
+        if len(node.state) == edge:
+            lucky = everyone or (places > 0 and generator.below(left) < places)
+            left -= 1
+            if not lucky:
+                continue
+            places -= 1
+        if len(node.state) >= edge:
+            kept.append(node)
+    return kept
+
+
+class TreeNode:
+    """A state in a Monte Carlo tree: its placements, those tried, its visits and rewards."""
+
+    def __init__(self, task: Task, state: Cells) -> None:
+        self.state = state
+        self.legal = task.legal(state)
+        self.tried: dict[int, TreeNode] = {}
+        self.visits = 0
+        self.cells = 0
+
+
+def mcts_choice(
+    task: Task, state: Cells, generator: Generator, *, iterations: int, exploration: float
+) -> Choice:
+    """Monte Carlo tree search; the most visited placement."""
+    check_at_least('iterations', iterations, 1)
+    root = TreeNode(task, state)
+    cost = sum(iterate(task, root, generator, exploration) for _ in range(iterations))
+    most = max(child.visits for child in root.tried.values())
+    ties = [i for i in range(len(root.legal)) if i in root.tried and root.tried[i].visits == most]
+    return Choice((root.legal[ties[generator.below(len(ties))]],), cost)
+
+
+def iterate(task: Task, root: TreeNode, generator: Generator, exploration: float) -> int:
+    """One walk through the tree, and what follows; the states evaluated."""
+    way = [root]
+    cost = 0
+    while cost == 0 and way[-1].legal:
+        node = way[-1]
+        untried = [i for i in range(len(node.legal)) if i not in node.tried]
+        if untried:
+            index = untried[generator.below(len(untried))]
+            node.tried[index] = TreeNode(task, place(node.state, [node.legal[index]]))
+            cost = 1
+        else:
+            bounds = [
+                upper_bound(task, node, node.tried[i], exploration) for i in range(len(node.legal))
+            ]
+            ties = [i for i, bound in enumerate(bounds) if bound == max(bounds)]
+            index = ties[generator.below(len(ties))]
+        way.append(node.tried[index])
+    state = way[-1].state
+    while placements := task.legal(state):
+        state = place(state, [placements[generator.below(len(placements))]])
+        cost += 1
+    for node in way:
+        node.visits += 1
+        node.cells += len(state)
+    return cost
+
+
+def upper_bound(task: Task, parent: TreeNode, child: TreeNode, exploration: float) -> float:
+    """The upper confidence bound of a child in the tree."""
+    mean = child.cells / (child.visits * len(task.region))
+    return mean + exploration * math.sqrt(natural_logarithm(parent.visits) / child.visits)
+
+
+def natural_logarithm(number: int) -> float:
+    """ln of m * 2**e, by the series of 2 atanh((m - 1) / (m + 1)) with 18 terms."""
+    e = number.bit_length() - 1
+    m = number / 2**e
+    s = (m - 1) / (m + 1)
+    series = 1 / 35
+    for divisor in (33, 31, 29, 27, 25, 23, 21, 19, 17, 15, 13, 11, 9, 7, 5, 3, 1):
+        series = series * (s * s) + 1 / divisor
+    return e * 0.6931471805599453 + 2 * s * series
+
+
 SEARCHES: dict[str, Callable[..., Choice]] = {
     'random': random_choice,
     'bfs': bfs_choice,
     'astar': astar_choice,
     'best_first': best_first_choice,
+    'beam': beam_choice,
+    'mcts': mcts_choice,
 }
 
 
@@ -258,6 +387,7 @@ def attempt(
     built: Cells,
     seed: int,
     number: int,
+    /,
     *,
     search: str,
     **settings: Any,

@@ -26,7 +26,7 @@ from bag_builders import (
     trial_said,
     write_bag,
 )
-from builders import CHAIR, NEVER_SOLVED, ODD, SQUARE, cancelled_record, spec
+from builders import CHAIR, NEVER_SOLVED, ODD, SQUARE, cancelled_record, ended, spec
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
@@ -41,7 +41,7 @@ from blocks_planning.ros.bagging.repair import _records, is_finished, repair
 from blocks_planning.ros.wire.topics import OUTCOME, STATE, SUBGOAL, TOPICS, TRIAL
 from blocks_planning.search.result import CancelToken
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import Message, TrialEnded
+from blocks_planning.trials.messages import Message
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.status import TrialStatus
 
@@ -562,9 +562,9 @@ def test_cancelled_trial(tmp_path: Path, after: int) -> None:
     record = cancelled_record(trial, after + 1)
     heard: list[Message] = []
     run_trial(trial, CancelToken(), heard.append)
-    ended = TrialEnded(trial.trial_id, record.status)
+    over = ended(trial.trial_id, record)
     for extra in (0, 1, 5):
-        said = said_of(trial, record, [*heard[: after + 1 + extra], ended])
+        said = said_of(trial, [*heard[: after + 1 + extra], over])
         found = only_trial(write_bag(tmp_path / f'bag{extra}', said))
         if record.status is TrialStatus.CANCELLED:
             assert found.record == record
@@ -573,13 +573,19 @@ def test_cancelled_trial(tmp_path: Path, after: int) -> None:
 
 # Lies
 
-LIES: dict[str, Callable[[Any], None]] = {
-    'status': lambda outcome: setattr(outcome, 'status', 'stuck'),
+LIES: dict[str, Callable[[Any], object]] = {
+    'status': lambda outcome: (
+        setattr(outcome, 'status', 'stuck'),
+        setattr(outcome, 'code', outcome.CODE_STUCK),
+    ),
     'blocks': lambda outcome: setattr(outcome, 'blocks', outcome.blocks + 1),
     'subgoals': lambda outcome: setattr(outcome, 'subgoals', outcome.subgoals + 1),
     'action_planning_cost': lambda outcome: setattr(outcome, 'action_planning_cost', 1),
     'subgoal_planning_cost': lambda outcome: setattr(outcome, 'subgoal_planning_cost', 2),
     'solution_cost': lambda outcome: setattr(outcome, 'solution_cost', 3),
+    'orders': lambda outcome: setattr(outcome, 'orders', outcome.orders + 1),
+    'surprises': lambda outcome: setattr(outcome, 'surprises', 1),
+    'f1': lambda outcome: setattr(outcome, 'f1', 0.5),
     'placements': lambda outcome: outcome.placements.reverse(),
 }
 
@@ -606,6 +612,7 @@ def test_cancelling_is_no_way_to_hide_success(tmp_path: Path, bag: Path) -> None
     def lie(one: Said) -> Said:
         if one.topic is OUTCOME:
             one.message.status = 'cancelled'
+            one.message.code = one.message.CODE_CANCELLED
         return one
 
     assert any(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from builders import CHAIR, spec
+from builders import CHAIR, ended, spec
 from peers import Bench, Graph, Peer
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterValue
@@ -50,7 +51,7 @@ def test_bytes_that_say_nothing_are_refused() -> None:
 
 def test_node_counts_bytes_that_say_nothing_and_goes_on(graph: Graph) -> None:
     on = Bench(graph, WORLD, graph.add(world.make_node), TRIAL_SPEC)
-    data = serialize_message(TRIAL.to_ros(STARTED))
+    data = serialize_message(TRIAL.to_ros(None, STARTED))
     for length in (4, 12, len(data) - 1):
         on.peer.outlets[TRIAL].publish(data[:length])
     graph.spin_until(lambda: on.node.refused == 3)
@@ -68,7 +69,7 @@ def test_what_contradicts_is_counted_and_changes_nothing(graph: Graph) -> None:
         if state.sequence == 2 and state.placements[0] != STATES[1].placements[0]
     )
     before, memory = on.node.refused, on.node.memory
-    on.peer.say(WorldState(TRIAL_SPEC.trial_id, 2, other.built, other.placements, other.status))
+    on.peer.say(replace(other, trial_id=TRIAL_SPEC.trial_id))
     graph.spin_until(lambda: on.node.refused == before + 1)
     assert on.node.memory.state == memory.state == STATES[1]
 
@@ -110,7 +111,7 @@ def test_outcome_of_somebody_else_holds_a_trial_up_and_no_more(
     graph.spin_until(lambda: peer.outlets[OUTCOME].get_subscription_count() == 1)
     orchestrator.start_trial(TRIAL_SPEC.trial_id, TRIAL_SPEC)
     graph.spin_until(lambda: node.memory.state is not None)
-    peer.outlets[OUTCOME].publish(OUTCOME.to_ros(TRIAL_SPEC.trial_id, RECORD))
+    peer.outlets[OUTCOME].publish(OUTCOME.to_ros(None, ended(TRIAL_SPEC.trial_id, RECORD)))
     graph.spin_until(lambda: node.memory.state is None)
     graph.spin_until(lambda: node.memory.state is not None)
     assert node.trial == STARTED
@@ -174,8 +175,9 @@ def test_goal_whose_caller_is_gone_keeps_nobody_out(graph: Graph, tmp_path: Path
     class Goal:
         trial = spec_to_ros('', TRIAL_SPEC)
 
-    assert node._judge_goal(Goal()) is GoalResponse.ACCEPT
-    assert node._judge_goal(Goal()) is GoalResponse.ACCEPT
+    judge = node._goals._server._goal_callback
+    assert [judge(Goal()), judge(Goal())] == [GoalResponse.ACCEPT] * 2
+    assert not node._goals.is_busy
 
 
 def test_inbox_is_bounded_by_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,12 +203,14 @@ def test_searcher_takes_on_no_more_than_it_can(monkeypatch: pytest.MonkeyPatch) 
     memory, _ = searcher.step(searcher.Memory(), STARTED)
     asked: list[Message] = []
     for cells in range(9):
-        memory, said = searcher.step(memory, SearchRequest(TRIAL_SPEC.trial_id, Query(0, cells)))
+        memory, said = searcher.step(
+            memory, SearchRequest(TRIAL_SPEC.trial_id, (Query(0, cells),))
+        )
         asked += said
     assert len(asked) == 5
     result = next(m.result for m in HEARD if isinstance(m, SearchAnswer))
     for solve in asked:
         assert isinstance(solve, Solve)
         memory, _ = searcher.step(memory, SearchAnswer(solve.trial_id, solve.query, result))
-    assert [query.region for query in memory.known] == [2, 3, 4]
+    assert [query.target for query in memory.known] == [2, 3, 4]
     assert not memory.solving

@@ -11,17 +11,18 @@ from graphs import bring_up, record_lines, run_graph, write_script
 from peers import Bench, Graph, Peer
 from persons import BUILD, WITHDRAWN, Person, human_spec, rows_of
 
+from blocks_planning.board.geometry import Board
 from blocks_planning.ros.bagging.bags import trials_of
 from blocks_planning.ros.nodes import subgoal_selector
 from blocks_planning.ros.wire.graph import SUBGOAL_SELECTOR
 from blocks_planning.ros.wire.topics import OUTCOME, PROPOSAL, SEARCH_RESULT, STATE, SUBGOAL, TRIAL
 from blocks_planning.subgoals.proposals import Proposal
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
     SearchRequest,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
@@ -29,6 +30,7 @@ from blocks_planning.trials.messages import (
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.script import read_script
 from blocks_planning.trials.verify import contradictions
+from blocks_planning.worlds.observation import states_of
 
 SPEC = human_spec('#..#/#..#/####/####/#..#/#..#', depth=2)
 
@@ -82,7 +84,9 @@ class Proposer(Peer):
         state = self.person.state
         if state is None or isinstance(heard, (SubgoalChosen, TrialEnded)):
             return
-        if state.status.value != 'building' or (chosen and state.sequence < chosen[-1].end):
+        if state.status.value != 'building' or (
+            chosen and is_under_way(self._board, chosen[-1], state)
+        ):
             return
         is_answer = not isinstance(heard, WorldState)
         if is_answer and heard.result.solved:  # type: ignore[union-attr]
@@ -93,6 +97,13 @@ class Proposer(Peer):
             if word.kind is not WITHDRAWN:
                 self._is_waiting = True
                 return
+
+
+def is_under_way(board: Board, chosen: SubgoalChosen, state: WorldState) -> bool:
+    """Whether the subgoal leads on from a state, or begins after it."""
+    if chosen.sequence > state.sequence:
+        return True
+    return chosen.progress(board, states_of(board, state.observations)).is_open
 
 
 def test_whole_graph_with_a_person(graph: Graph, tmp_path: Path) -> None:
@@ -130,7 +141,7 @@ def test_selector_that_comes_late_hears_all_that_was_said(graph: Graph) -> None:
     node = graph.add(subgoal_selector.make_node)
     graph.spin_until(lambda: len(node.memory.proposals) == 2)
     graph.spin_until(lambda: peer.only(SearchRequest))
-    assert peer.only(SearchRequest)[0].query.built == 0
+    assert peer.only(SearchRequest)[0].queries[0].built == 0
 
 
 @pytest.mark.parametrize(
@@ -158,4 +169,6 @@ def test_proposal_that_is_not_taken_is_refused_with_a_reason(
 def test_participant_of_a_script_without_people_is_refused(tmp_path: Path) -> None:
     done = run_graph(write_script(tmp_path), '--out', tmp_path / 'out', '--participant', 'P07')
     assert (done.returncode, done.stdout) == (2, '')
-    assert "participant 'P07' was given, but no strategy of it is human" in done.stderr
+    assert (
+        "participant 'P07' was given, but no strategy in the script asks a person" in done.stderr
+    )

@@ -7,25 +7,34 @@ from pathlib import Path
 import pytest
 from disks import disk_of
 
-from blocks_planning.board.blocks import Placed
+from blocks_planning.board.blocks import Block, Placed, Placement
 from blocks_planning.errors import RecordError
 from blocks_planning.ros.runtime.journal import MOST_KEPT, Journal
+from blocks_planning.worlds.observation import Observation
 
-PLACEMENTS = [Placed(2, 1, 0, 0), Placed(1, 16, 15, 0), Placed(4, 2, 3, 14)]
+SEEN = [
+    Observation(Placement(Block(2, 1), 1), (Placed(2, 1, 0, 0),)),
+    Observation(
+        None,
+        (Placed(1, 16, 15, 0), Placed(1, 1, 3, 0)),
+        (Placed(2, 1, 0, 0), Placed(1, 1, 2, 0)),
+    ),
+    Observation(Placement(Block(4, 2), 3)),
+]
 
 
 def journal_of(folder: Path, trial_id: str = 'a') -> Path:
-    """The file of a journal with all placements, as a world leaves it that was killed."""
+    """The file of a journal with all observations, as a world leaves it that was killed."""
     journal = Journal(folder)
     assert journal.begin(trial_id) == ([], '')
-    for placed in PLACEMENTS:
-        journal.append(placed)
+    for seen in SEEN:
+        journal.append(seen)
     journal.release()
     (path,) = folder.glob('*.journal')
     return path
 
 
-def begin(folder: Path, trial_id: str = 'a') -> tuple[list[Placed], str]:
+def begin(folder: Path, trial_id: str = 'a') -> tuple[list[Observation], str]:
     """What a world that is started again finds."""
     journal = Journal(folder)
     found = journal.begin(trial_id)
@@ -35,25 +44,36 @@ def begin(folder: Path, trial_id: str = 'a') -> tuple[list[Placed], str]:
 
 def test_what_was_written_is_there_again(tmp_path: Path) -> None:
     journal_of(tmp_path)
-    assert begin(tmp_path) == (PLACEMENTS, '')
+    assert begin(tmp_path) == (SEEN, '')
+
+
+def test_version_1_is_read_and_goes_on_as_version_2(tmp_path: Path) -> None:
+    path = journal_of(tmp_path)
+    path.write_bytes(b'blocks_planning/journal 1\n2 1 0 0\n1 16 15 0\n4 2')
+    kept = [Observation(p.placement, (p,)) for p in (Placed(2, 1, 0, 0), Placed(1, 16, 15, 0))]
+    again = Journal(tmp_path)
+    assert again.begin('a') == (kept, '')
+    again.append(SEEN[1])
+    again.release()
+    assert begin(tmp_path) == ([*kept, SEEN[1]], '')
 
 
 def test_another_trial_begins_empty_and_costs_the_first_nothing(tmp_path: Path) -> None:
     journal_of(tmp_path)
     again = Journal(tmp_path)
     assert again.begin('b') == ([], '')
-    assert again.begin('a') == (PLACEMENTS, '')
+    assert again.begin('a') == (SEEN, '')
 
 
-@pytest.mark.parametrize('cut', range(1, 9))
+@pytest.mark.parametrize('cut', range(1, 8))
 def test_a_torn_last_line_is_forgotten_and_the_rest_goes_on(tmp_path: Path, cut: int) -> None:
     path = journal_of(tmp_path)
     path.write_bytes(path.read_bytes()[:-cut])
     again = Journal(tmp_path)
-    assert again.begin('a') == (PLACEMENTS[:-1], '')
-    again.append(PLACEMENTS[-1])
+    assert again.begin('a') == (SEEN[:-1], '')
+    again.append(SEEN[-1])
     again.release()
-    assert begin(tmp_path) == (PLACEMENTS, '')
+    assert begin(tmp_path) == (SEEN, '')
 
 
 @pytest.mark.parametrize(
@@ -62,8 +82,8 @@ def test_a_torn_last_line_is_forgotten_and_the_rest_goes_on(tmp_path: Path, cut:
 def test_what_is_no_journal_is_set_aside(tmp_path: Path, content: bytes) -> None:
     path = journal_of(tmp_path)
     path.write_bytes(content)
-    placements, warning = begin(tmp_path)
-    assert placements == []
+    observations, warning = begin(tmp_path)
+    assert observations == []
     assert 'is not a journal; it was set aside as' in warning
     (aside,) = tmp_path.glob('*.aside-*')
     assert aside.read_bytes() == content
@@ -72,8 +92,8 @@ def test_what_is_no_journal_is_set_aside(tmp_path: Path, content: bytes) -> None
 def test_a_bad_line_in_the_middle_sets_the_file_aside(tmp_path: Path) -> None:
     path = journal_of(tmp_path)
     path.write_bytes(path.read_bytes().replace(b'1 16 15 0', b'1 16 x 0'))
-    placements, warning = begin(tmp_path)
-    assert (placements, bool(warning)) == ([], True)
+    observations, warning = begin(tmp_path)
+    assert (observations, bool(warning)) == ([], True)
 
 
 def test_no_trial_id_leads_out_of_the_folder(tmp_path: Path) -> None:
@@ -85,7 +105,7 @@ def test_no_trial_id_leads_out_of_the_folder(tmp_path: Path) -> None:
 def test_a_trial_that_is_over_needs_no_journal(tmp_path: Path) -> None:
     journal = Journal(tmp_path)
     journal.begin('a')
-    journal.append(PLACEMENTS[0])
+    journal.append(SEEN[0])
     journal.end()
     assert list(tmp_path.iterdir()) == []
 
@@ -104,11 +124,11 @@ def test_a_journal_that_can_not_be_right_is_set_aside(tmp_path: Path) -> None:
     journal = Journal(tmp_path)
     journal.begin('a')
     assert 'it was set aside as' in journal.refuse()
-    journal.append(PLACEMENTS[1])
+    journal.append(SEEN[1])
     journal.release()
     (aside,) = tmp_path.glob('*.aside-*')
     assert aside.read_bytes() == content
-    assert begin(tmp_path) == (PLACEMENTS[1:2], '')
+    assert begin(tmp_path) == (SEEN[1:2], '')
 
 
 def test_a_full_disk_leaves_the_journal_as_it_was(tmp_path: Path) -> None:
@@ -117,13 +137,13 @@ def test_a_full_disk_leaves_the_journal_as_it_was(tmp_path: Path) -> None:
     before = path.read_bytes()
     journal = Journal(tmp_path)
     journal.begin('a')
-    for room in range(len(b'4 2 3 14\n')):
+    for room in range(len(b'4 2 3;;\n')):
         with disk_of(len(before) + room), pytest.raises(RecordError, match='cannot be written'):
-            journal.append(PLACEMENTS[2])
+            journal.append(SEEN[2])
         assert path.read_bytes() == before
-    journal.append(PLACEMENTS[2])
+    journal.append(SEEN[2])
     journal.release()
-    assert begin(tmp_path) == ([*PLACEMENTS, PLACEMENTS[2]], '')
+    assert begin(tmp_path) == ([*SEEN, SEEN[2]], '')
 
 
 def test_a_full_disk_begins_no_journal(tmp_path: Path) -> None:
@@ -131,10 +151,10 @@ def test_a_full_disk_begins_no_journal(tmp_path: Path) -> None:
     with disk_of(3):
         assert journal.begin('a') == ([], '')
         with pytest.raises(RecordError, match='cannot be written'):
-            journal.append(PLACEMENTS[0])
-    journal.append(PLACEMENTS[0])
+            journal.append(SEEN[0])
+    journal.append(SEEN[0])
     journal.release()
-    assert begin(tmp_path) == (PLACEMENTS[:1], '')
+    assert begin(tmp_path) == (SEEN[:1], '')
 
 
 def test_one_at_a_time_writes_in_a_folder(tmp_path: Path) -> None:
@@ -155,9 +175,9 @@ def test_every_trial_id_has_a_journal_of_its_own(tmp_path: Path) -> None:
     for first, second in (('a/b', 'a_b'), ('x' * 250 + 'a', 'x' * 250 + 'b')):
         journal = Journal(tmp_path)
         journal.begin(first)
-        journal.append(PLACEMENTS[0])
+        journal.append(SEEN[0])
         assert journal.begin(second) == ([], '')
-        assert journal.begin(first) == (PLACEMENTS[:1], '')
+        assert journal.begin(first) == (SEEN[:1], '')
         journal.release()
 
 
@@ -168,6 +188,6 @@ def test_trials_that_come_and_go_leave_no_heap_of_files(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
     for number in range(3 * MOST_KEPT):
         journal.begin(str(number))
-        journal.append(PLACEMENTS[0])
+        journal.append(SEEN[0])
     assert len(list(tmp_path.iterdir())) <= MOST_KEPT + 1
-    assert journal.begin(str(3 * MOST_KEPT - 1)) == (PLACEMENTS[:1], '')
+    assert journal.begin(str(3 * MOST_KEPT - 1)) == (SEEN[:1], '')

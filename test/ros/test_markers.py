@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from builders import CHAIR, SQUARE, spec
+from builders import CHAIR, SQUARE, ended, spec
 from peers import Bench, Graph
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -15,10 +15,10 @@ from visualization_msgs.msg import Marker, MarkerArray
 from blocks_planning.ros.nodes.marker_publisher import MarkerPublisher
 from blocks_planning.ros.wire.graph import MARKER_PUBLISHER
 from blocks_planning.ros.wire.topics import MARKERS, OUTCOME
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
@@ -99,7 +99,7 @@ def colour(marker: Marker) -> str:
 
 def finish(on: Bench) -> None:
     """Say how the trial ended."""
-    on.peer.outlets[OUTCOME].publish(OUTCOME.to_ros(TRIAL_SPEC.trial_id, RECORD))
+    on.peer.outlets[OUTCOME].publish(OUTCOME.to_ros(None, ended(TRIAL_SPEC.trial_id, RECORD)))
 
 
 def test_every_block_is_where_it_stands_in_the_colour_of_its_subgoal(graph: Graph) -> None:

@@ -9,7 +9,6 @@ import sys
 import threading
 import time
 from collections.abc import Callable
-from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from typing import Any
 import pytest
 import yaml
 from blocks_planning_msgs.action import RunTrial
-from builders import CHAIR, EMPTY, NEVER_SOLVED, spec
+from builders import CHAIR, EMPTY, NEVER_SOLVED, ended, spec
 from graphs import NODES
 from peers import Bench, Graph, Peer
 from rclpy.action.client import ActionClient, GoalStatus
@@ -52,13 +51,13 @@ from blocks_planning.ros.wire.topics import (
     TOPICS,
     TRIAL,
 )
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
     PlaceBlock,
     SearchAnswer,
     SearchRequest,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
@@ -73,7 +72,11 @@ LONG = spec('/'.join(['#' * 16] * 16), strategy='none', depth=12, budget=10**15)
 HEARD: list[Message] = []
 RECORD = run_trial(TRIAL_SPEC, observe=HEARD.append)
 KINDS = {topic.kind: topic for topic in TOPICS}
-FIRST_ASKED = [m for m in HEARD if isinstance(m, SearchRequest) and m.query.built == 0]
+FIRST_ASKED = [
+    m
+    for m in HEARD
+    if isinstance(m, SearchRequest) and all(query.built == 0 for query in m.queries)
+]
 PARTS: list[tuple[NodeTopics, Callable[..., Any]]] = [
     (WORLD, world.make_node),
     (SUBGOAL_SELECTOR, subgoal_selector.make_node),
@@ -156,8 +159,9 @@ def test_ignores_what_is_stale_doubled_or_foreign(
     if topics is ACTION_SEARCHER:
         asked = [message for message in heard if isinstance(message, SearchRequest)]
         on.tell(*asked)
-        answers = on.hear(2 * len(asked), SearchAnswer)
-        assert by_topic(answers[len(asked) :]) == by_topic(answers[: len(asked)])
+        count = sum(len(request.queries) for request in asked)
+        answers = on.hear(2 * count, SearchAnswer)
+        assert by_topic(answers[count:]) == by_topic(answers[:count])
 
 
 @each_part
@@ -167,7 +171,7 @@ def test_is_done_when_the_trial_is_over(
     on = bench(graph, topics, make_node)
     heard = for_node(topics)
     on.tell(*heard[: len(heard) // 2])
-    outcome = OUTCOME.to_ros(TRIAL_SPEC.trial_id, RECORD)
+    outcome = OUTCOME.to_ros(None, ended(TRIAL_SPEC.trial_id, RECORD))
     on.peer.outlets[OUTCOME].publish(outcome)
     on.fence(OUTCOME)
     memory, said = on.node.memory, list(on.peer.heard)
@@ -257,8 +261,8 @@ def test_world_says_why_a_block_can_not_be_placed(graph: Graph) -> None:
 def test_world_that_was_killed_finds_its_board(graph: Graph, tmp_path: Path) -> None:
     journal = Journal(tmp_path)
     journal.begin(TRIAL_SPEC.trial_id)
-    for placed in RECORD.placements[:-1]:
-        journal.append(placed)
+    for seen in RECORD.observations[1:-1]:
+        journal.append(seen)
     journal.release()
     overrides = [Parameter('journal_dir', value=str(tmp_path))]
     node = graph.add(world.make_node, parameter_overrides=overrides)
@@ -270,8 +274,10 @@ def test_world_that_was_killed_finds_its_board(graph: Graph, tmp_path: Path) -> 
     on.tell(PlaceBlock(TRIAL_SPEC.trial_id, last, RECORD.placements[-1].placement))
     graph.spin_until(lambda: node.memory.state.sequence == last + 1)
     (path,) = tmp_path.glob('*.journal')
-    written = path.read_text().splitlines()[1:]
-    assert written == [' '.join(map(str, placed)) for placed in RECORD.placements]
+    again = Journal(tmp_path / 'copy')
+    (tmp_path / 'copy' / path.name).write_bytes(path.read_bytes())
+    assert again.begin(TRIAL_SPEC.trial_id) == (list(RECORD.observations[1:]), '')
+    again.release()
 
 
 def test_world_takes_its_time_to_place_a_block(graph: Graph) -> None:
@@ -380,31 +386,49 @@ def test_orchestrator_gives_feedback_and_a_result(graph: Graph, tmp_path: Path) 
     assert (tmp_path / 'trials.jsonl').read_text() == RECORD.to_line() + '\n'
 
 
-def test_orchestrator_refuses_goals_that_can_not_be(graph: Graph, tmp_path: Path) -> None:
-    _, client = with_client(graph, tmp_path)
-    good = spec_to_ros('', TRIAL_SPEC)
-    for change in (
-        lambda trial: setattr(trial.silhouette, 'width', 0),
-        lambda trial: setattr(trial.planner, 'strategy', 'luck'),
-        lambda trial: setattr(trial.planner, 'lambda_weight', float('nan')),
-        lambda trial: setattr(trial, 'library', []),
-    ):
-        trial = deepcopy(good)
+def test_goal_that_cannot_be_run_is_aborted_with_the_reason(graph: Graph, tmp_path: Path) -> None:
+    on, client = with_client(graph, tmp_path)
+    changes: list[tuple[Callable[[Any], None], str]] = [
+        (lambda trial: setattr(trial.silhouette, 'width', 0), 'silhouette.width: '),
+        (lambda trial: setattr(trial.planner, 'strategy', 'luck'), 'planner.strategy: '),
+        (
+            lambda trial: setattr(
+                trial.planner.strategy_settings[0], 'double_value', float('nan')
+            ),
+            'planner.strategy: lambda must be ',
+        ),
+        (lambda trial: setattr(trial, 'library', []), 'library: '),
+    ]
+    for count, (change, reason) in enumerate(changes, start=1):
+        trial = spec_to_ros('', TRIAL_SPEC)
         change(trial)
-        assert not accepted(graph, client, trial)
-    assert accepted(graph, client, good)
+        ended = end_of(graph, client, trial)
+        assert ended.status == GoalStatus.STATUS_ABORTED
+        outcome = ended.result.outcome
+        assert (outcome.status, outcome.code) == ('refused', outcome.CODE_REFUSED)
+        assert outcome.reason.startswith(reason)
+        assert on.node.refused == count
+    assert on.peer.only(TrialStarted) == []
 
 
 def test_orchestrator_runs_one_goal_at_a_time(graph: Graph, tmp_path: Path) -> None:
     on, client = with_client(graph, tmp_path)
-    assert accepted(graph, client, spec_to_ros('', TRIAL_SPEC))
-    assert not accepted(graph, client, spec_to_ros('', FOREIGN))
+    first = client.send_goal_async(RunTrial.Goal(trial=spec_to_ros('', TRIAL_SPEC)))
+    graph.spin_until(first.done)
+    second = end_of(graph, client, spec_to_ros('', FOREIGN))
+    assert second.status == GoalStatus.STATUS_ABORTED
+    assert second.result.outcome.reason == 'a trial is running'
     assert len(on.hear(1, TrialStarted)) == 1
+    first.result().cancel_goal_async()
+    ended = first.result().get_result_async()
+    graph.spin_until(ended.done)
+    assert ended.result().status == GoalStatus.STATUS_CANCELED
 
 
 def test_orchestrator_ignores_what_is_stale_or_foreign(graph: Graph, tmp_path: Path) -> None:
     on, client = with_client(graph, tmp_path)
-    assert accepted(graph, client, spec_to_ros('', TRIAL_SPEC))
+    sending = client.send_goal_async(RunTrial.Goal(trial=spec_to_ros('', TRIAL_SPEC)))
+    graph.spin_until(sending.done)
     (trial,) = on.hear(1, TrialStarted)
     states = [replace(m, trial_id=trial.trial_id) for m in by_topic(HEARD)[WorldState]]
     on.peer.say(states[1])
@@ -424,7 +448,11 @@ def test_orchestrator_ends_a_trial_that_needs_nothing(graph: Graph, tmp_path: Pa
     client = graph.add(Caller).client
     graph.spin_until(client.server_is_ready)
     assert outcome_of(graph, client, spec(EMPTY)).status == 'success'
-    assert outcome_of(graph, client, spec(NEVER_SOLVED)).status == 'gave_up'
+    ended = end_of(graph, client, spec_to_ros('', spec(NEVER_SOLVED)))
+    assert ended.status == GoalStatus.STATUS_ABORTED  # its tower was not built
+    outcome = ended.result.outcome
+    assert (outcome.status, outcome.code) == ('gave_up', outcome.CODE_GAVE_UP)
+    assert outcome.reason == 'no subgoal could be solved'
     assert outcome_of(graph, client, TRIAL_SPEC).status == 'success'
 
 
@@ -488,21 +516,19 @@ def with_client(graph: Graph, folder: Path) -> tuple[Bench, ActionClient]:
     return on, client
 
 
-def accepted(graph: Graph, client: ActionClient, trial: Any) -> bool:
-    """Whether a goal is accepted."""
+def end_of(graph: Graph, client: ActionClient, trial: Any) -> Any:
+    """Status and result of a goal."""
     sending = client.send_goal_async(RunTrial.Goal(trial=trial))
     graph.spin_until(sending.done)
-    return bool(sending.result().accepted)
+    assert sending.result().accepted
+    ending = sending.result().get_result_async()
+    graph.spin_until(ending.done)
+    return ending.result()
 
 
 def outcome_of(graph: Graph, client: ActionClient, trial: TrialSpec) -> Any:
-    """What comes of a goal."""
-    sending = client.send_goal_async(RunTrial.Goal(trial=spec_to_ros('', trial)))
-    graph.spin_until(sending.done)
-    assert sending.result().accepted
-    result = sending.result().get_result_async()
-    graph.spin_until(result.done)
-    return result.result().result.outcome
+    """The outcome of a goal."""
+    return end_of(graph, client, spec_to_ros('', trial)).result.outcome
 
 
 # Parameters, and what is written about nodes

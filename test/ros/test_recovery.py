@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 from blocks_planning_msgs.action import RunTrial
-from builders import CHAIR, spec
+from builders import CHAIR, ended, spec
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from disks import disk_of
 from graphs import NODES, local_lines, record_lines, write_script
@@ -32,27 +32,27 @@ from blocks_planning.ros.nodes.bag_recorder import BagRecorder
 from blocks_planning.ros.nodes.marker_publisher import MarkerPublisher
 from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
 from blocks_planning.ros.nodes.trial_view import TrialView
-from blocks_planning.ros.runtime import processes
+from blocks_planning.ros.runtime.attendance import Attendance
 from blocks_planning.ros.runtime.diagnostics import TOPIC, Health
 from blocks_planning.ros.runtime.journal import Journal
 from blocks_planning.ros.runtime.part_node import PartNode
-from blocks_planning.ros.runtime.peers import Attendance
 from blocks_planning.ros.runtime.process import stood_still
-from blocks_planning.ros.runtime.processes import MOST_DEATHS, STABLE_S, NodeProcess
 from blocks_planning.ros.runtime.single import claim_name
 from blocks_planning.ros.wire.conversions.trial import spec_to_ros
 from blocks_planning.ros.wire.graph import GRAPH, TRIAL_ORCHESTRATOR, WORLD
 from blocks_planning.ros.wire.topics import OUTCOME, SEARCH_REQUEST, STATE, TRIAL
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
     PlaceBlock,
+    PlacementCode,
     PlacementOutcome,
     SearchRequest,
-    SubgoalChosen,
     TrialStarted,
     WorldState,
 )
+from blocks_planning.worlds.observation import Observation
 
 SPEC = spec(CHAIR, lam=0.2, depth=2)
 HEARD: list[Message] = []
@@ -289,7 +289,7 @@ def test_journal_that_contradicts_the_task_is_set_aside(
     journal = Journal(tmp_path)
     journal.begin(SPEC.trial_id)
     for placed in (*RECORD.placements[:1], wrong):
-        journal.append(placed)
+        journal.append(Observation(placed.placement, (placed,)))
     journal.release()
     (path,) = tmp_path.glob('*.journal')
     content = path.read_bytes()
@@ -304,7 +304,7 @@ def test_journal_that_contradicts_the_task_is_set_aside(
     assert failed.reason.endswith(f'it was set aside as {aside.name}')
     on.tell(placing(0))
     assert on.hear(2, WorldState)[-1].placements == RECORD.placements[:1]
-    on.peer.outlets[OUTCOME].publish(OUTCOME.to_ros(SPEC.trial_id, RECORD))
+    on.peer.outlets[OUTCOME].publish(OUTCOME.to_ros(None, ended(SPEC.trial_id, RECORD)))
     graph.spin_until(lambda: not on.node.is_busy)
     on.tell(placing(2))
     assert len(on.peer.only(PlacementOutcome)) == 2
@@ -329,10 +329,14 @@ def test_trial_ends_when_nothing_can_be_placed(graph: Graph, tmp_path: Path) -> 
     at = node.memory.state.sequence
     assert at == 1
     for sequence in (at - 1, at + 1):
-        on.tell(PlacementOutcome(SPEC.trial_id, sequence, None, 'stale', failed=True))
-    on.tell(PlacementOutcome(SPEC.trial_id, at, None, 'that block is impossible'))
+        on.tell(PlacementOutcome(SPEC.trial_id, sequence, None, 'stale', PlacementCode.FAILED))
+    on.tell(
+        PlacementOutcome(
+            SPEC.trial_id, at, None, 'that block is impossible', PlacementCode.IMPOSSIBLE
+        )
+    )
     assert node.is_busy
-    on.tell(PlacementOutcome(SPEC.trial_id, at, None, 'the arm is broken', failed=True))
+    on.tell(PlacementOutcome(SPEC.trial_id, at, None, 'the arm is broken', PlacementCode.FAILED))
     graph.spin_until(lambda: listener.outcomes)
     assert listener.outcomes[0].status == 'cancelled'
     assert listener.outcomes[0].reason == 'the arm is broken'
@@ -430,74 +434,10 @@ def test_node_that_was_stopped_is_there_again(graph: Graph, tmp_path: Path) -> N
             process.send_signal(signal.SIGCONT)
             peer.say(HEARD[0])
             peer.say(next(m for m in HEARD if isinstance(m, WorldState)))
-            asked = len(
-                {m.query for m in HEARD if isinstance(m, SearchRequest) and not m.query.built}
-            )
-            graph.spin_until(lambda: len({m.query for m in peer.heard}) == asked)
+            first = next(m for m in HEARD if isinstance(m, SearchRequest))
+            graph.spin_until(lambda: first in peer.heard)
             assert process.poll() is None
         finally:
             process.terminate()
         assert process.stderr is not None
-        assert re.search(r'stood still for \d+\.\d s, and begins anew', process.stderr.read())
-
-
-class Dying:
-    """Processes that end as soon as they are told, in a time of their own."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.now, self.code, self.started = 100.0, None, 0
-        monkeypatch.setattr(processes.time, 'monotonic', lambda: self.now)
-        monkeypatch.setattr(processes.subprocess, 'Popen', self.popen)
-
-    code: int | None
-
-    def popen(self, *_: object, **__: object) -> Dying:
-        self.started += 1
-        self.code = None
-        return self
-
-    def poll(self) -> int | None:
-        return self.code
-
-
-@pytest.fixture
-def dying(monkeypatch: pytest.MonkeyPatch) -> Dying:
-    return Dying(monkeypatch)
-
-
-def watch(process: NodeProcess, dying: Dying, seconds: float) -> bool:
-    """Look after a process for some time; return whether it is not given up."""
-    end = dying.now + seconds
-    kept = True
-    while kept and dying.now < end:
-        dying.now += 0.05
-        kept = process.keep_alive()
-    return kept
-
-
-def test_process_that_dies_at_once_is_given_up(dying: Dying) -> None:
-    process = NodeProcess('world', (), {})
-    process.start()
-    pauses = []
-    for _ in range(MOST_DEATHS):
-        dying.code, died = -9, dying.now
-        while dying.poll() is not None:
-            assert watch(process, dying, 0.04)
-        pauses.append(dying.now - died)
-    dying.code = -9
-    assert not process.keep_alive()
-    assert (process.restarts, dying.started) == (MOST_DEATHS, MOST_DEATHS + 1)
-    assert pauses == sorted(pauses)
-    assert pauses[0] < 0.3
-    assert pauses[-1] < 4.0
-
-
-def test_process_that_runs_for_a_while_is_forgiven(dying: Dying) -> None:
-    process = NodeProcess('world', (), {})
-    process.start()
-    for _ in range(20 * MOST_DEATHS):
-        assert watch(process, dying, STABLE_S + 1)
-        dying.code = -9
-        assert watch(process, dying, 0.5)
-        assert dying.poll() is None
-    assert process.restarts == 20 * MOST_DEATHS
+        assert re.search(r'was stopped for \d+\.\d s, and starts again', process.stderr.read())

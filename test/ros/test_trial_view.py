@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from builders import CHAIR, spec
+from builders import CHAIR, ended, spec
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from graphs import write_script
 from peers import Bench, Graph
@@ -24,7 +24,6 @@ from blocks_planning.errors import ConfigurationError
 from blocks_planning.ros.nodes.trial_view import TOKEN_VARIABLE, TrialView
 from blocks_planning.ros.runtime.diagnostics import TOPIC as DIAGNOSTICS
 from blocks_planning.ros.runtime.reserving import ReservedPort
-from blocks_planning.ros.wire.conversions.trial import outcome_to_ros
 from blocks_planning.ros.wire.graph import TRIAL_VIEW
 from blocks_planning.ros.wire.topics import OUTCOME, SEARCH_RESULT, STATE
 from blocks_planning.subgoals.human import Human
@@ -85,7 +84,7 @@ def visible(trial: Any) -> list[Message]:
 
 def end(on: Bench, trial: Any) -> None:
     """Say the outcome of a trial."""
-    on.peer.outlets[OUTCOME].publish(outcome_to_ros(trial.trial_id, run_trial(trial)))
+    on.peer.outlets[OUTCOME].publish(OUTCOME.to_ros(None, ended(trial.trial_id, run_trial(trial))))
 
 
 @pytest.fixture

@@ -22,6 +22,7 @@ from blocks_planning.search.result import (
     SolveStatus,
 )
 from blocks_planning.search.searches import MAX_DEPTH, MAX_ITERATIONS, Search, make_search
+from blocks_planning.search.searches import SEARCHES as REGISTRY
 from blocks_planning.search.solve import solve
 from blocks_planning.subgoals.registry import make_strategy
 from blocks_planning.trials.local import run_trial
@@ -39,8 +40,16 @@ SEARCHES = {
     'astar': make_search('astar', {'iterations': MAX_ITERATIONS}),
     'astar, many': make_search('astar', {'iterations': 50, 'execute': 'path', 'divisor': 'mean'}),
     'best_first': make_search('best_first', {'iterations': MAX_ITERATIONS}),
+    'beam': make_search('beam', {'width': 5000}),
+    'beam, many': make_search('beam', {'width': 1}),
+    'mcts': make_search('mcts', {'iterations': MAX_ITERATIONS}),
+    'mcts, many': make_search('mcts', {'iterations': 1}),
     'random': make_search('random', {}),
 }
+
+
+def test_every_search_is_cancelled_here() -> None:
+    assert {search.name for search in SEARCHES.values()} | {'exact'} >= set(REGISTRY)
 
 
 def odd_board(side: int) -> Task:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 import pytest
-from oracles.exact import by_dropping
+from oracles.exact import arrangements_by_dropping
 from problems import random_problem
 
 from blocks_planning.board import rules
@@ -26,16 +26,18 @@ def analysed(task: Task) -> ExactAnswer:
     return answer
 
 
-def brute_force(problem: Problem) -> tuple[int | None, int]:
+def brute_force(problem: Problem) -> tuple[int | None, int, int]:
+    """Fewest blocks, arrangements, and those of them that have the fewest blocks."""
     board = problem.task.board
-    answer = by_dropping(
+    found = arrangements_by_dropping(
         board.width,
         board.height,
         [(block.width, block.height) for block in problem.task.library],
         frozenset(board.cells(problem.region)),
         frozenset(board.cells(problem.built)),
     )
-    return answer.fewest_blocks, answer.arrangements
+    sizes = sorted(map(len, found))
+    return (sizes[0], len(sizes), sizes.count(sizes[0])) if sizes else (None, 0, 0)
 
 
 @pytest.mark.parametrize('batch', range(4))
@@ -44,9 +46,11 @@ def test_silhouettes_against_brute_force(batch: int) -> None:
     for _ in range(40):
         task = random_problem(source, widest=4, highest=4, most_cells=9).task
         answer = analysed(task)
-        assert (answer.fewest_blocks, answer.arrangements) == brute_force(
-            Problem(task, 0, task.silhouette)
-        )
+        assert (
+            answer.fewest_blocks,
+            answer.arrangements,
+            answer.optimal_arrangements,
+        ) == brute_force(Problem(task, 0, task.silhouette))
         regions = [task.rows(height) for height in range(1, task.board.height + 1)]
         by_rows = [brute_force(Problem(task, 0, region))[0] for region in regions]
         assert list(answer.by_rows) == by_rows
@@ -58,7 +62,7 @@ def test_regions_from_built_states_against_brute_force(batch: int) -> None:
     for _ in range(60):
         problem = random_problem(source, widest=4, highest=4, most_cells=9)
         result = solve(problem, Exact(), 0)
-        fewest, _ = brute_force(problem)
+        fewest, *_ = brute_force(problem)
         assert result.solved == (fewest is not None)
         if fewest is None:
             assert result.status is SolveStatus.UNSOLVABLE_PROVEN
@@ -84,6 +88,13 @@ def test_by_hand() -> None:
     assert (answer.fewest_blocks, answer.arrangements, answer.by_rows) == (3, 3, (None, 3))
 
 
+def test_fewest_blocks_and_arrangements_are_counted_apart() -> None:
+    """Of five ways to lay a row of four ones and twos, one has two blocks."""
+    board = Board(4, 1)
+    answer = analysed(Task(board, board.full, (Block(1, 1), Block(2, 1))))
+    assert (answer.fewest_blocks, answer.arrangements, answer.optimal_arrangements) == (2, 5, 1)
+
+
 def test_what_hangs_in_the_air_cannot_be_built() -> None:
     board = Board(3, 2)
     answer = analysed(Task(board, board.parse(['###', '.#.']), (Block(1, 1),)))
@@ -104,6 +115,12 @@ def test_arrangements_are_exact_beyond_64_bits() -> None:
     answer = analysed(Task(board, board.full, (Block(1, 1), Block(2, 1))))
     assert answer.arrangements == 1597**16
     assert answer.fewest_blocks == 8 * 16
+    assert answer.optimal_arrangements == 1
+    odd = analysed(Task(Board(15, 16), Board(15, 16).full, (Block(1, 1), Block(2, 1))))
+    assert odd.optimal_arrangements == 8**16  # one single in each row, at one of eight places
+    assert odd.arrangements == 987**16
+    thrice = analysed(Task(board, board.full, (Block(1, 1), Block(2, 1), Block(3, 1))))
+    assert thrice.optimal_arrangements == 21**16  # five threes and a one, or four and two twos
 
 
 def test_too_large_a_board_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

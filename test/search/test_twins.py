@@ -15,28 +15,60 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.search.compiled import count_states
 from blocks_planning.search.result import CancelToken
-from blocks_planning.search.searches import make_search
+from blocks_planning.search.searches import SEARCHES, make_search
 from blocks_planning.search.solve import solve
+from blocks_planning.settings import all_settings
 
-SEARCHES: list[tuple[str, dict[str, Any]]] = [
-    ('random', {}),
-    *[('bfs', {'depth': depth}) for depth in (1, 2, 3, 4)],
-    *[
-        ('astar', {'iterations': iterations, 'divisor': divisor, 'execute': execute})
+TWINS = oracle_search.SEARCHES
+SETTINGS: dict[str, list[dict[str, Any]]] = {
+    'random': [{}],
+    'bfs': [
+        {'depth': depth, 'dead_ends': dead_ends}
+        for depth in (1, 2, 3, 4)
+        for dead_ends in ('worst', 'ignored')
+    ],
+    'astar': [
+        {'iterations': iterations, 'divisor': divisor, 'execute': execute}
         for iterations in (2, 9, 64)
         for divisor in ('smallest', 'mean', 'largest')
         for execute in ('first', 'path')
     ],
-    *[
-        ('best_first', {'iterations': iterations, 'execute': execute})
+    'best_first': [
+        {'iterations': iterations, 'execute': execute}
         for iterations in (2, 30)
         for execute in ('first', 'path')
     ],
+    'beam': [{'width': width} for width in (1, 2, 3, 10, 50)],
+    'mcts': [
+        {'iterations': iterations, 'exploration': exploration}
+        for iterations in (1, 5, 60)
+        for exploration in (0.0, 0.5, 3.0)
+    ],
+}
+"""The settings with which each search is held to its twin."""
+OTHERWISE = {'exact'}
+"""Searches whose twin gives other than placements: test_exact.py."""
+CASES = [
+    (name, settings)
+    for name in SEARCHES
+    if name not in OTHERWISE
+    for settings in SETTINGS.get(name, [])
 ]
-IDS = ['-'.join(map(str, [name, *settings.values()])) for name, settings in SEARCHES]
+IDS = ['-'.join(map(str, [name, *settings.values()])) for name, settings in CASES]
 
 
-@pytest.mark.parametrize(('name', 'settings'), SEARCHES, ids=IDS)
+@pytest.mark.parametrize('name', SEARCHES)
+def test_every_search_has_a_twin_and_settings_to_be_held_to_it(name: str) -> None:
+    if name in OTHERWISE:
+        return
+    assert name in TWINS
+    for setting in all_settings(SEARCHES[name]):
+        tried = {settings[setting.name] for settings in SETTINGS[name]}
+        assert tried >= set(setting.choices), f'{setting.name} is not tried with every word'
+        assert len(tried) > 1, f'{setting.name} is tried with one value only'
+
+
+@pytest.mark.parametrize(('name', 'settings'), CASES, ids=IDS)
 def test_a_solve_is_that_of_the_slow_twin(name: str, settings: dict[str, Any]) -> None:
     source = random.Random(name + str(settings))
     for _ in range(12):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -11,10 +12,10 @@ from persons import BUILD, GIVE_UP, WITHDRAWN
 from blocks_planning.board.blocks import Block, Placed
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.search.result import SolveResult, SolveStatus
-from blocks_planning.subgoals.decision import Candidate, Decision, Query
+from blocks_planning.subgoals.decision import Candidate, Decision, Query, Situation
 from blocks_planning.subgoals.human import Human, used
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind, target_of
-from blocks_planning.subgoals.regions import height_of
+from blocks_planning.subgoals.regions import Label, Region, drawn_region, rows_label
 from blocks_planning.subgoals.registry import (
     STRATEGIES,
     make_planner,
@@ -28,6 +29,7 @@ LEFT, RIGHT, BOTTOM = (
     TASK.board.parse(rows)
     for rows in (['...', '#..', '#..'], ['...', '..#', '..#'], ['...', '...', '###'])
 )
+DRAWN = Region(Label('drawn'), LEFT)
 SOLVED = SolveResult(
     SolveStatus.SOLVED, (Placed(*Block(1, 2), 0, 0),), planning_cost=7, solution_cost=3, attempts=2
 )
@@ -41,8 +43,14 @@ def said(*words: tuple[ProposalKind, int]) -> tuple[Proposal, ...]:
     )
 
 
+def situation(
+    known: dict[Query, SolveResult], proposals: tuple[Proposal, ...], built: int = 0
+) -> Situation:
+    return Situation(TASK, built, 0, known, proposals)
+
+
 def decide(known: dict[Query, SolveResult], *words: tuple[ProposalKind, int]) -> Any:
-    return Human().decide(TASK, 0, 0, known, said(*words))
+    return Human().decide(situation(known, said(*words)))
 
 
 def test_waits_for_the_person() -> None:
@@ -56,18 +64,18 @@ def test_asks_what_filling_the_region_takes() -> None:
     assert decide({}, (BUILD, LEFT)) == [Query(0, LEFT)]
     drawn = TASK.board.parse(['##.', '##.', '##.'])
     assert decide({}, (WITHDRAWN, RIGHT), (BUILD, drawn)) == [Query(0, LEFT)]
-    assert Human().decide(TASK, LEFT, 0, {}, said((BUILD, RIGHT))) == [
+    assert Human().decide(situation({}, said((BUILD, RIGHT)), LEFT)) == [
         Query(LEFT, TASK.silhouette)
     ]
 
 
 def test_follows_the_person_when_it_can_be_built() -> None:
     decision = decide({Query(0, LEFT): SOLVED}, (BUILD, LEFT), (GIVE_UP, 0))
-    assert decision.candidates == (Candidate((), 2, 7, None, SolveStatus.SOLVED),)
+    assert decision.candidates == (Candidate((DRAWN,), 2, 7, None, SolveStatus.SOLVED),)
     assert decision.chosen == 0
     assert decision.subgoal_planning_cost == 7
     (subgoal,) = decision.subgoals
-    assert (subgoal.height, subgoal.region, subgoal.execute) == (None, LEFT, 1)
+    assert (subgoal.region, subgoal.target, subgoal.execute) == (DRAWN, LEFT, 1)
     assert (subgoal.planning_cost, subgoal.solution_cost, subgoal.attempts) == (7, 3, 2)
 
 
@@ -96,25 +104,26 @@ def test_giving_up_ends_it() -> None:
 
 def test_rows_are_known_by_their_height() -> None:
     rows = TASK.rows(1)
-    assert height_of(TASK, rows) == 1
-    assert height_of(TASK, TASK.silhouette) == 2  # and 3: the lowest stands for all
-    assert height_of(TASK, LEFT) is None
+    assert drawn_region(TASK, 0, BOTTOM) == Region(rows_label(1), rows)
+    # Of heights 2 and 3, whose rows are the same, the lower is named.
+    assert drawn_region(TASK, LEFT, RIGHT) == Region(rows_label(2), TASK.silhouette)
+    assert drawn_region(TASK, 0, LEFT) == DRAWN
     decision = decide({Query(0, rows): SOLVED}, (BUILD, BOTTOM))
-    assert decision.candidates[0].heights == (1,)
-    assert decision.subgoals[0].height == 1
+    assert decision.candidates[0].regions == (Region(rows_label(1), rows),)
+    assert decision.subgoals[0].region.label == rows_label(1)
 
 
 def test_used_are_those_up_to_the_one_that_decided() -> None:
     words = said((BUILD, RIGHT), (WITHDRAWN, 0), (BUILD, LEFT), (BUILD, RIGHT), (GIVE_UP, 0))
     known = {Query(0, RIGHT): UNSOLVED, Query(0, LEFT): SOLVED}
-    decision = Human().decide(TASK, 0, 0, known, words)
+    decision = Human().decide(situation(known, words))
     assert isinstance(decision, Decision)
-    assert used(TASK, decision, words) == words[:3]
-    gave_up = Human().decide(
-        TASK, 0, 0, {Query(0, RIGHT): UNSOLVED}, said((BUILD, RIGHT), (GIVE_UP, 0))
-    )
+    assert used(situation(known, words), decision) == words[:3]
+    ended = situation({Query(0, RIGHT): UNSOLVED}, said((BUILD, RIGHT), (GIVE_UP, 0)))
+    gave_up = Human().decide(ended)
     assert isinstance(gave_up, Decision)
-    assert len(used(TASK, gave_up, said((BUILD, RIGHT), (GIVE_UP, 0), (BUILD, LEFT)))) == 2
+    more = said((BUILD, RIGHT), (GIVE_UP, 0), (BUILD, LEFT))
+    assert len(used(replace(ended, proposals=more), gave_up)) == 2
 
 
 def test_target_has_what_is_built_and_nothing_off_the_silhouette() -> None:

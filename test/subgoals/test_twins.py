@@ -12,7 +12,7 @@ from problems import random_problem
 from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.search.searches import make_search
-from blocks_planning.subgoals.decision import Decision
+from blocks_planning.subgoals.decision import Candidate, Decision
 from blocks_planning.subgoals.registry import make_strategy
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.spec import TrialSpec
@@ -36,11 +36,17 @@ SEARCHES: list[tuple[str, dict[str, Any]]] = [
 ]
 
 
+def _heights(candidate: Candidate) -> tuple[int, ...]:
+    """The heights of regions that are rows."""
+    assert all(region.label.kind == 'rows' for region in candidate.regions)
+    return tuple(region.label.numbers[0] for region in candidate.regions)
+
+
 def _decision(decision: Decision, board: Board) -> tuple[Any, ...]:
     """A decision as the twin writes it."""
     candidates = [
         (
-            candidate.heights,
+            _heights(candidate),
             candidate.cells,
             candidate.planning_cost,
             candidate.value,
@@ -48,7 +54,7 @@ def _decision(decision: Decision, board: Board) -> tuple[Any, ...]:
         )
         for candidate in decision.candidates
     ]
-    chosen = None if decision.chosen is None else decision.candidates[decision.chosen].heights
+    chosen = None if decision.chosen is None else _heights(decision.candidates[decision.chosen])
     return frozenset(board.cells(decision.built)), candidates, chosen
 
 

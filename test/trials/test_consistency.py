@@ -13,14 +13,9 @@ from blocks_planning.board.blocks import Placed
 from blocks_planning.subgoals.decision import Query
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind
 from blocks_planning.trials.consistency import Consistency, Contradiction
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import (
-    Message,
-    SearchAnswer,
-    SearchRequest,
-    SubgoalChosen,
-    WorldState,
-)
+from blocks_planning.trials.messages import Message, SearchAnswer, SearchRequest, WorldState
 from blocks_planning.trials.status import TrialStatus
 
 TRIAL = spec(CHAIR, lam=0.2, depth=2, commit='action')
@@ -63,7 +58,7 @@ def test_state_goes_on_from_the_one_before() -> None:
     )
     Consistency(TRIAL).check(other)
     fits = after(STATES[1])
-    with pytest.raises(Contradiction, match='placements: do not go on'):
+    with pytest.raises(Contradiction, match='observations: do not go on'):
         fits.check(other)
     fits.check(STATES[2])
 
@@ -163,7 +158,7 @@ def test_answer_of_strange_blocks_or_costs_is_refused() -> None:
 
 def test_request_for_cells_that_are_not_to_be_filled_is_refused() -> None:
     full = TRIAL.task.board.full
-    after(SearchRequest(TRIAL.trial_id, Query(0, TRIAL.task.silhouette)))
-    with pytest.raises(Contradiction, match='region'):
-        after(SearchRequest(TRIAL.trial_id, Query(0, full)))
-    after(SearchRequest(TRIAL.trial_id, Query(full, full)))
+    after(SearchRequest(TRIAL.trial_id, (Query(0, TRIAL.task.silhouette),)))
+    with pytest.raises(Contradiction, match='queries'):
+        after(SearchRequest(TRIAL.trial_id, (Query(0, full),)))
+    after(SearchRequest(TRIAL.trial_id, (Query(full, full),)))

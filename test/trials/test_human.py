@@ -20,12 +20,12 @@ from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials import selector
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
     SearchAnswer,
-    SubgoalChosen,
     TrialStarted,
     WorldState,
 )
@@ -65,10 +65,9 @@ def test_everything_that_was_said_is_in_the_record() -> None:
     assert record.subgoal_planning_cost == entry.decision.candidates[0].planning_cost > 0
     assert record.action_planning_cost == 0
     data = json.loads(record.to_line())
-    assert data['participant'] == 'P01'
-    assert data['costs'] == 'shown'
+    assert data['strategy_settings'] == {'participant': 'P01', 'costs': 'shown'}
     assert data['proposals'][0] == {
-        'placed': 0,
+        'sequence': 0,
         'number': 0,
         'kind': 'withdrawn',
         'region': hex(SPEC.task.rows(1)),
@@ -192,7 +191,7 @@ def swap(data: dict[str, Any]) -> None:
 
 
 def say_more(data: dict[str, Any]) -> None:
-    data['proposals'].append({**data['proposals'][-1], 'placed': 99})
+    data['proposals'].append({**data['proposals'][-1], 'sequence': 99})
 
 
 def draw_another(data: dict[str, Any]) -> None:

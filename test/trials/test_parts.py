@@ -31,26 +31,29 @@ from blocks_planning.search.result import Problem, SolveResult, SolveStatus
 from blocks_planning.search.solve import solve
 from blocks_planning.subgoals.decision import Query
 from blocks_planning.trials import scribe, searcher, selector, world
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     CancelTrial,
     Message,
     PlaceBlock,
+    PlacementCode,
     PlacementOutcome,
     PlanMade,
     Remind,
     SearchAnswer,
     SearchRequest,
     Solve,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
+    observed,
 )
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.trials.verify import contradictions
+from blocks_planning.worlds.observation import Observation
 
 PARTS = {'world': world, 'selector': selector, 'searcher': searcher, 'scribe': scribe}
 TRIAL = spec(CHAIR, lam=0.2, depth=2)
@@ -96,6 +99,13 @@ def only(kind: type[Any], messages: list[Message]) -> list[Any]:
     return [message for message in messages if isinstance(message, kind)]
 
 
+def seen(trial: TrialSpec, *placements: Placed) -> WorldState:
+    """The state after some orders that were carried out."""
+    found = Observation()
+    made = (Observation(placed.placement, (placed,)) for placed in placements)
+    return observed(trial.trial_id, trial.task.board, (found, *made), TrialStatus.BUILDING)
+
+
 undisturbed = cache(run_trial)
 """The record of a trial in which nothing goes wrong."""
 
@@ -118,22 +128,20 @@ ANSWERS: list[SearchAnswer] = only(SearchAnswer, HEARD)
 
 def test_world_clears_its_board_for_a_new_trial() -> None:
     memory, said = tell(world, [START])
-    assert said == [WorldState(TRIAL.trial_id, 0, 0, (), TrialStatus.BUILDING)]
+    assert said == [seen(TRIAL)]
     place = PlaceBlock(TRIAL.trial_id, 0, Placement(Block(1, 2), 0))
     memory, _ = tell(world, [place], memory)
     _, said = tell(world, [FOREIGN_START], memory)
-    assert said == [WorldState(FOREIGN.trial_id, 0, 0, (), TrialStatus.BUILDING)]
+    assert said == [seen(FOREIGN)]
 
 
 def test_world_drops_a_block_and_shows_where_it_lies() -> None:
     memory, _ = tell(world, [START])
     _, said = tell(world, [PlaceBlock(TRIAL.trial_id, 0, Placement(Block(1, 2), 3))], memory)
     placed = Placed(1, 2, 3, 0)
-    built = TRIAL.task.board.rectangle(3, 0, 1, 2)
-    assert said == [
-        PlacementOutcome(TRIAL.trial_id, 0, placed),
-        WorldState(TRIAL.trial_id, 1, built, (placed,), TrialStatus.BUILDING),
-    ]
+    assert said == [PlacementOutcome(TRIAL.trial_id, 0, placed), seen(TRIAL, placed)]
+    assert isinstance(said[1], WorldState)
+    assert said[1].built == TRIAL.task.board.rectangle(3, 0, 1, 2)
 
 
 @pytest.mark.parametrize(
@@ -297,10 +305,8 @@ def test_answer_that_was_not_asked_for_is_no_reason_to_decide() -> None:
 def test_selector_asks_about_every_candidate_and_then_decides() -> None:
     memory, requests = tell(selector, [START, STATES[0]])
     task = TRIAL.task
-    assert requests == [
-        SearchRequest(TRIAL.trial_id, Query(0, task.rows(height))) for height in range(1, 7)
-    ]
-    queries = [request.query for request in only(SearchRequest, requests)]
+    queries = tuple(Query(0, task.rows(height)) for height in range(1, 7))
+    assert requests == [SearchRequest(TRIAL.trial_id, queries)]
     for query in queries[:0:-1]:
         memory, said = tell(
             selector, [SearchAnswer(TRIAL.trial_id, query, answer(TRIAL, query))], memory
@@ -325,8 +331,7 @@ def test_selector_says_nothing_while_a_subgoal_is_executed() -> None:
 
 def test_selector_decides_anew_where_a_plan_was_left() -> None:
     memory, _ = tell(selector, HEARD[: HEARD.index(CHOSEN[0])])
-    cells = TRIAL.task.board.rectangle(1, 0, 1, 2)
-    elsewhere = WorldState(TRIAL.trial_id, 1, cells, (Placed(1, 2, 1, 0),), TrialStatus.BUILDING)
+    elsewhere = seen(TRIAL, Placed(1, 2, 1, 0))
     after, said = tell(selector, [elsewhere], memory)
     # It covers cells that are no target: no region contains them.
     assert after.chosen is not None
@@ -342,8 +347,8 @@ def test_selector_goes_on_to_the_next_subgoal_of_a_sequence() -> None:
     assert {len(message.decisions) for message in chosen} == {1}
     for before, after in pairwise(chosen):
         assert before.subgoal is not None
-        assert before.subgoal.region == after.built
-        assert after.sequence == before.end == before.sequence + before.subgoal.execute
+        assert before.subgoal.target == after.built
+        assert after.sequence == before.sequence + before.subgoal.execute
 
 
 @pytest.mark.parametrize('trial', TRIALS, ids=IDS)
@@ -355,7 +360,9 @@ def test_selector_that_has_forgotten_everything_asks_again(trial: TrialSpec) -> 
         announced = only(SubgoalChosen, said)
         while requests := only(SearchRequest, said):
             answers = [
-                SearchAnswer(trial.trial_id, r.query, answer(trial, r.query)) for r in requests
+                SearchAnswer(trial.trial_id, query, answer(trial, query))
+                for request in requests
+                for query in request.queries
             ]
             memory, said = tell(selector, list(answers), memory)
             announced += only(SubgoalChosen, said)
@@ -368,7 +375,9 @@ def test_selector_that_has_forgotten_everything_asks_again(trial: TrialSpec) -> 
 def test_selector_that_is_reminded_asks_what_is_unanswered() -> None:
     memory, requests = tell(selector, [START, STATES[0]])
     memory, _ = tell(selector, ANSWERS[:2], memory)
-    assert selector.step(memory, Remind(TRIAL.trial_id)) == (memory, tuple(requests[2:]))
+    [request] = only(SearchRequest, requests)
+    rest = SearchRequest(TRIAL.trial_id, request.queries[2:])
+    assert selector.step(memory, Remind(TRIAL.trial_id)) == (memory, (rest,))
 
 
 # The searcher.
@@ -376,7 +385,7 @@ def test_selector_that_is_reminded_asks_what_is_unanswered() -> None:
 
 def test_searcher_solves_what_is_asked_once() -> None:
     query = ANSWERS[0].query
-    request = SearchRequest(TRIAL.trial_id, query)
+    request = SearchRequest(TRIAL.trial_id, (query,))
     memory, said = tell(searcher, [START, request])
     assert said == [Solve(TRIAL.trial_id, query)]
     memory, said = tell(searcher, [ANSWERS[0]], memory)
@@ -386,9 +395,9 @@ def test_searcher_solves_what_is_asked_once() -> None:
 
 
 def test_searcher_solves_no_query_twice_at_a_time() -> None:
-    request = SearchRequest(TRIAL.trial_id, ANSWERS[0].query)
+    request = SearchRequest(TRIAL.trial_id, (ANSWERS[0].query,))
     _, said = tell(searcher, [START, request, request])
-    assert said == [Solve(TRIAL.trial_id, request.query)]
+    assert said == [Solve(TRIAL.trial_id, ANSWERS[0].query)]
 
 
 def test_searcher_sends_one_placement_for_each_state() -> None:
@@ -399,7 +408,7 @@ def test_searcher_sends_one_placement_for_each_state() -> None:
         memory, said = tell(searcher, [state], memory)
         sent += said
     assert sent == [
-        PlanMade(TRIAL.trial_id, 0, plan.region, plan.execute, plan.placements),
+        PlanMade(TRIAL.trial_id, 0, plan.target, plan.execute, plan.placements),
         *(
             PlaceBlock(TRIAL.trial_id, number, placed.placement)
             for number, placed in enumerate(plan.placements)
@@ -420,7 +429,7 @@ def test_searcher_that_has_forgotten_everything_goes_on(trial: TrialSpec, order:
         latest = [message for message in chosen if message.sequence <= state.sequence][-1]
         latched = [state, latest] if order == 'state first' else [latest, state]
         memory, said = tell(searcher, [started(trial), *latched])
-        query = Query(latest.built, latest.subgoal.region)
+        query = Query(latest.built, latest.subgoal.target)
         assert said == [Solve(trial.trial_id, query)]
         result = SearchAnswer(trial.trial_id, query, answer(trial, query))
         _, said = tell(searcher, [result], memory)
@@ -438,8 +447,7 @@ def test_searcher_places_nothing_where_no_subgoal_leads_on() -> None:
     for state in STATES[CHOSEN[1].sequence :]:
         _, said = tell(searcher, [state], memory)
         assert only(PlaceBlock, said) == []
-    elsewhere = replace(STATES[1], built=TRIAL.task.board.rectangle(1, 0, 1, 2))
-    _, said = tell(searcher, [elsewhere], memory)
+    _, said = tell(searcher, [seen(TRIAL, Placed(1, 2, 1, 0))], memory)
     assert only(PlaceBlock, said) == []
 
 
@@ -454,7 +462,7 @@ def test_searcher_does_nothing_when_the_planner_gives_up() -> None:
 
 def test_scribe_writes_down_and_ends() -> None:
     memory, said = tell(scribe, HEARD)
-    assert said == [TrialEnded(TRIAL.trial_id, TrialStatus.SUCCESS)]
+    assert said == [TrialEnded(TRIAL.trial_id, TrialStatus.SUCCESS, '', run_trial(TRIAL))]
     assert memory.record() == run_trial(TRIAL)
 
 
@@ -466,12 +474,14 @@ def test_scribe_has_no_record_before_a_trial() -> None:
 def test_scribe_ends_a_trial_that_the_world_can_not_go_on_with() -> None:
     """With what the world says, and only on the state that it says it of."""
     memory, _ = tell(scribe, [HEARD[0], STATES[0], STATES[1]])
-    failed = PlacementOutcome(TRIAL.trial_id, 1, None, 'the arm is broken', failed=True)
+    failed = PlacementOutcome(TRIAL.trial_id, 1, None, 'the arm is broken', PlacementCode.FAILED)
     for stale in (replace(failed, sequence=0), replace(failed, sequence=2)):
         assert scribe.step(memory, stale) == (memory, ())
-    assert scribe.step(memory, replace(failed, failed=False)) == (memory, ())
+    assert scribe.step(memory, replace(failed, code=PlacementCode.IMPOSSIBLE)) == (memory, ())
     memory, said = scribe.step(memory, failed)
-    assert said == (TrialEnded(TRIAL.trial_id, TrialStatus.CANCELLED, 'the arm is broken'),)
+    record = memory.record()
+    assert (record.status, record.reason) == (TrialStatus.CANCELLED, 'the arm is broken')
+    assert said == (TrialEnded(TRIAL.trial_id, record.status, record.reason, record),)
     assert memory.record().placements == STATES[1].placements
 
 
@@ -479,12 +489,15 @@ def test_world_is_restored_by_placements_that_can_be_only() -> None:
     memory, _ = tell(world, [HEARD[0]])
     assert isinstance(memory, world.Memory)
     for state in STATES:
-        restored = world.restored(memory, state.placements)
+        restored = world.restored(memory, state.observations)
         assert restored is not None
         assert restored.state == state
-    first, *rest = STATES[-1].placements
-    assert world.restored(memory, [first._replace(row=first.row + 1), *rest]) is None
-    assert world.restored(memory, [first, Placed(9, 9, 0, 0)]) is None
+    found, first, *rest = STATES[-1].observations
+    (placed,) = first.landed
+    moved = first._replace(landed=(placed._replace(row=placed.row + 1),))
+    assert world.restored(memory, (found, moved, *rest)) is None
+    assert world.restored(memory, (found, first, Observation(None, (placed,)))) is None
+    assert world.restored(memory, (first,)) is None
 
 
 def test_scribe_ends_a_cancelled_trial_as_it_stands() -> None:
@@ -494,8 +507,8 @@ def test_scribe_ends_a_cancelled_trial_as_it_stands() -> None:
         if before:
             assert said == []
             continue
-        assert said == [TrialEnded(TRIAL.trial_id, TrialStatus.CANCELLED)]
         record = memory.record()
+        assert said == [TrialEnded(TRIAL.trial_id, TrialStatus.CANCELLED, '', record)]
         assert record.status is TrialStatus.CANCELLED
         assert list(contradictions(record)) == []
         for message in HEARD[length:]:

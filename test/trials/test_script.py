@@ -76,12 +76,14 @@ def test_order_is_strategies_searches_stimuli_seeds(tmp_path: Path) -> None:
         ('none', None, None),
         *(('scoping', lam, commit) for lam in (0.0, 0.5, 1.0) for commit in ('action', 'subgoal')),
     ]
-    searches = [('random', {}), ('bfs', {'depth': 3}), ('bfs', {'depth': 1})]
+    bfs = {'dead_ends': 'worst'}
+    searches = [('random', {}), ('bfs', {'depth': 3, **bfs}), ('bfs', {'depth': 1, **bfs})]
     expected = list(product(strategies, searches, ('cogsci2021/9', 'cogsci2021/2'), (7, 8), [500]))
     found = []
     for trial in trials:
         said = trial.to_json()
-        strategy = (said['strategy'], said['lambda'], said['commit'])
+        settings = said['strategy_settings']
+        strategy = (said['strategy'], settings.get('lambda'), settings.get('commit'))
         search = (said['search'], said['search_settings'])
         found.append((strategy, search, said['stimulus'], said['seed'], said['budget']))
     assert found == expected
@@ -166,6 +168,7 @@ def test_mistake_is_named_where_it_stands(
         read(tmp_path, GOOD.replace(old, new, 1))
     text = str(refused.value)
     assert text.startswith(f'{tmp_path / "trials.yaml"}, {place}')
+    assert text.count('trials.yaml') == 1
     assert re.search(said, text)
     assert '\n' not in text
 

@@ -178,26 +178,50 @@ def _turned(parts: list[Any]) -> list[Any]:
     return parts[::-1]
 
 
+def _and_landed(*block: int) -> Callable[[list[Any]], list[Any]]:
+    more = {'ordered': [*block[:3]], 'landed': [[*block]], 'gone': []}
+    return lambda seen: [*seen, more]
+
+
+def _first_block(_: object) -> list[Any]:
+    """The block that stands first in the record of a scoping trial."""
+    return [TRUE['scoping']['placements'][0]]
+
+
 def _in_decision(index: int, key: str, to: object) -> Lie:
     return put('decisions', index, key, to=to)
 
 
 LIES: dict[str, tuple[str, Lie]] = {
     # Placements.
-    'placement moved': ('scoping', put('placements', 0, 2, to=_more)),
-    'row wrong': ('scoping', put('placements', 0, 3, to=_more)),
-    'last row wrong': ('scoping', put('placements', -1, 3, to=_more)),
-    'block off the board': ('scoping', put('placements', -1, 2, to=16)),
-    'block exchanged': ('scoping', put('placements', -1, 0, to=2)),
-    'block without width': ('scoping', put('placements', -1, 0, to=0)),
-    'block without height': ('scoping', put('placements', -1, 1, to=0)),
-    'first placement left out': ('scoping', _without('placements', 0)),
-    'last placement left out': ('scoping', _without('placements', -1)),
-    'placements in another order': ('scoping', put('placements', to=_turned)),
-    'placement added': ('scoping', put('placements', to=lambda p: [*p, [1, 2, 1, 4]])),
-    'placement added at the end': ('gave_up', put('placements', to=lambda p: [*p, [2, 2, 0, 4]])),
-    'nothing placed': ('scoping', put('placements', to=[])),
-    'something placed on an empty silhouette': ('nothing', put('placements', to=[[1, 2, 0, 0]])),
+    'placement moved': ('scoping', put('observations', 1, 'landed', 0, 2, to=_more)),
+    'row wrong': ('scoping', put('observations', 1, 'landed', 0, 3, to=_more)),
+    'last row wrong': ('scoping', put('observations', -1, 'landed', 0, 3, to=_more)),
+    'block off the board': ('scoping', put('observations', -1, 'landed', 0, 2, to=16)),
+    'block exchanged': ('scoping', put('observations', -1, 'landed', 0, 0, to=2)),
+    'block without width': ('scoping', put('observations', -1, 'landed', 0, 0, to=0)),
+    'block without height': ('scoping', put('observations', -1, 'landed', 0, 1, to=0)),
+    'first placement left out': ('scoping', _without('observations', 1)),
+    'last placement left out': ('scoping', _without('observations', -1)),
+    'placements in another order': (
+        'scoping',
+        put('observations', to=lambda seen: [seen[0], *seen[:0:-1]]),
+    ),
+    'placement added': ('scoping', put('observations', to=_and_landed(1, 2, 1, 4))),
+    'placement added at the end': ('gave_up', put('observations', to=_and_landed(2, 2, 0, 4))),
+    'nothing placed': ('scoping', put('observations', to=lambda seen: seen[:1])),
+    'something placed on an empty silhouette': (
+        'nothing',
+        put('observations', to=_and_landed(1, 2, 0, 0)),
+    ),
+    'another order': ('scoping', put('observations', 1, 'ordered', 2, to=_more)),
+    'nothing ordered': ('scoping', put('observations', 1, 'ordered', to=None)),
+    'nothing landed': ('scoping', put('observations', 1, 'landed', to=[])),
+    'landed twice': ('scoping', put('observations', 1, 'landed', to=_twice(0))),
+    'gone, though glued': ('scoping', put('observations', 2, 'gone', to=_first_block)),
+    'gone, though not there': ('scoping', put('observations', 1, 'gone', to=_first_block)),
+    'found on the board': ('scoping', put('observations', 0, 'landed', to=_first_block)),
+    'never seen': ('scoping', put('observations', to=[])),
     'block of no library': ('none', put('library', to='2x1')),
     # Status.
     'success as stuck': ('scoping', put('status', to='stuck')),
@@ -255,8 +279,8 @@ LIES: dict[str, tuple[str, Lie]] = {
     'plan without an attempt': ('scoping', put('decisions', 0, 'subgoals', 0, 'attempts', to=0)),
     # Decisions.
     'built': ('scoping', _in_decision(1, 'built', '0x1')),
-    'placed': ('scoping', _in_decision(1, 'placed', _more)),
-    'placed, behind the end': ('scoping', _in_decision(1, 'placed', 99)),
+    'sequence': ('scoping', _in_decision(1, 'sequence', _more)),
+    'sequence, behind the end': ('scoping', _in_decision(1, 'sequence', 99)),
     'first decision left out': ('scoping', _without('decisions', 0)),
     'decision left out': ('scoping', _without('decisions', 1)),
     'last decision left out': ('scoping', _without('decisions', -1)),
@@ -284,10 +308,15 @@ LIES: dict[str, tuple[str, Lie]] = {
         put('decisions', 0, 'candidates', 0, 'cells', to=_more),
     ),
     'cells, none': ('none', put('decisions', 0, 'candidates', 0, 'cells', to=_less)),
-    'rows': ('scoping', put('decisions', 0, 'candidates', 1, 'rows', to=[4])),
-    'rows outside the board': ('scoping', put('decisions', 0, 'candidates', 1, 'rows', to=[9])),
-    'no rows': ('scoping', put('decisions', 0, 'candidates', 1, 'rows', to=[])),
-    'rows fall': ('full', put('decisions', 0, 'candidates', 21, 'rows', to=_turned)),
+    'region': ('scoping', put('decisions', 0, 'candidates', 1, 'regions', to=[3])),
+    'label': ('scoping', put('decisions', 0, 'regions', 1, 'label', to={'rows': 5})),
+    'label of another kind': ('scoping', put('decisions', 0, 'regions', 1, 'label', to={'x': 2})),
+    'cells of a region': ('scoping', put('decisions', 0, 'regions', 1, 'cells', to='0x1')),
+    'probability': ('scoping', put('decisions', 0, 'candidates', 1, 'probability', to=0.5)),
+    'sequences': ('scoping', _in_decision(0, 'sequences', _less)),
+    'sequences, more': ('scoping', _in_decision(0, 'sequences', _more)),
+    'no regions': ('scoping', put('decisions', 0, 'candidates', 1, 'regions', to=[])),
+    'regions fall': ('full', put('decisions', 0, 'candidates', 21, 'regions', to=_turned)),
     'solved as unsolved': (
         'scoping',
         both(
@@ -347,9 +376,8 @@ LIES: dict[str, tuple[str, Lie]] = {
         'action',
         put('decisions', 0, 'subgoals', 0, 'placements', to=lambda p: [p[0], *p[:0:-1]]),
     ),
-    'region': ('scoping', put('decisions', 0, 'subgoals', 0, 'region', to='0x1')),
-    'rows of a subgoal': ('scoping', put('decisions', 0, 'subgoals', 0, 'rows', to=_more)),
-    'no rows of a subgoal': ('scoping', put('decisions', 0, 'subgoals', 0, 'rows', to=None)),
+    'target': ('scoping', put('decisions', 0, 'subgoals', 0, 'target', to='0x1')),
+    'region of a subgoal': ('scoping', put('decisions', 0, 'subgoals', 0, 'region', to=_more)),
     'execute less': ('scoping', put('decisions', 0, 'subgoals', 0, 'execute', to=_less)),
     'execute less at the end': (
         'scoping',
@@ -378,14 +406,19 @@ def test_lie_is_found(lie: str) -> None:
 @pytest.mark.parametrize(
     ('lie', 'sentence'),
     [
-        ('row wrong', 'placement 0 (Placed('),
+        ('row wrong', 'observation 1: the outcome is not'),
+        ('gone, though not there', 'observation 1: block '),
+        ('found on the board', 'observation 0 is not the board'),
         ('gave_up as success', "status 'success', but"),
-        ('built', 'decision 1: the state after 4 placements is not 0x1'),
+        ('built', 'decision 1: the state of observation 4 is not 0x1'),
         ('value', 'decision 0: candidate 1: has value'),
         ('cells', 'decision 0: candidate 1: adds 4 cells, not 5'),
-        ('chosen is not the best', 'decision 0: candidate 1 is not the best'),
-        ('cost considered', 'decision 0: considering cost'),
-        ('plan not followed', 'decision 0: subgoal 0: was not executed as planned'),
+        (
+            'chosen is not the best',
+            'decision 0: candidate 1 is chosen, but the strategy chooses 2',
+        ),
+        ('cost considered', 'decision 0: subgoal planning cost'),
+        ('plan not followed', 'decision 0: subgoal 0: observation 1 is of an order'),
     ],
 )
 def test_sentence_says_what_contradicts(lie: str, sentence: str) -> None:
@@ -421,7 +454,9 @@ def test_tie_that_was_drawn_otherwise_is_found() -> None:
             {'action_planning_cost', 'solution_cost', 'decisions'},
             id='cost changed everywhere',
         ),
-        pytest.param(put('seed', to=2), {'placements', 'decisions'}, id='another seed'),
+        pytest.param(
+            put('seed', to=2), {'placements', 'observations', 'decisions'}, id='another seed'
+        ),
     ],
 )
 def test_rerun_finds_what_is_consistent_but_not_true(lie: Lie, keys: set[str]) -> None:

@@ -3,6 +3,7 @@ from __future__ import annotations
 from textwrap import dedent
 
 import pytest
+from builders import as_ordered
 from rich.text import Text
 
 from blocks_planning.board.blocks import Placed
@@ -10,8 +11,10 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.decision import Decision, Subgoal
+from blocks_planning.subgoals.regions import Region, rows_label
 from blocks_planning.subgoals.registry import make_strategy
-from blocks_planning.trials.messages import SubgoalChosen, TrialStarted
+from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.messages import TrialStarted
 from blocks_planning.trials.record import DecisionRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.view import board as view_board
@@ -28,12 +31,17 @@ def second_subgoal() -> Scene:
     """Two blocks of the first subgoal stand, and two of the second, rows(3)."""
     task = Task(BOARD, SILHOUETTE)
     spec = TrialSpec('small', task, make_strategy('full', {}), make_search('bfs', {}))
-    subgoals = tuple(Subgoal(height, task.rows(height), 2, (), 0, 0, 1) for height in (1, 3))
-    decision = Decision(0, (), 0, subgoals, 0)
     blocks = [(2, 1, 0, 0), (2, 1, 2, 0), (1, 2, 0, 1), (2, 1, 1, 1)]
+    placements = tuple(Placed(*block) for block in blocks)
+    subgoals = tuple(
+        Subgoal(Region(rows_label(height), cells), cells, 2, plan, 0, 0, 1)
+        for height, plan in ((1, placements[:2]), (3, placements[2:]))
+        for cells in (task.rows(height),)
+    )
+    decision = Decision(0, (), 0, subgoals, 0, 1)
     return Scene(
         TrialStarted(spec.trial_id, spec),
-        placements=tuple(Placed(*block) for block in blocks),
+        observations=as_ordered(*placements),
         chosen=SubgoalChosen(spec.trial_id, 2, (DecisionRecord(0, decision, 2),)),
     )
 

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from builders import row_regions
+
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.search.searches import AStar, BestFirst, RandomPlacement
 from blocks_planning.subgoals.decision import Candidate, Decision
@@ -11,11 +13,11 @@ from blocks_planning.view.scene import last_scene
 
 def candidate(value: float | None, cost: int = 1234567) -> Candidate:
     status = SolveStatus.SOLVED if value is not None else SolveStatus.BUDGET_EXHAUSTED
-    return Candidate((1, 2), 8, cost, value, status)
+    return Candidate(row_regions(1, 2), 8, cost, value, status)
 
 
 def decision(values: list[float | None], chosen: int | None) -> Decision:
-    return Decision(0, tuple(map(candidate, values)), chosen, (), 0)
+    return Decision(0, tuple(map(candidate, values)), chosen, (), 0, len(values))
 
 
 def test_every_status_has_words():
@@ -70,10 +72,10 @@ def test_numbers_of_a_candidate():
 
 
 def test_heights_are_cut_between_numbers():
-    many = Candidate(tuple(range(1, 17)), 8, 1, 7.0, SolveStatus.SOLVED)
-    assert captions.heights_of(many, 38) == ' '.join(map(str, range(1, 17)))
+    many = Candidate(row_regions(*range(1, 17)), 8, 1, 7.0, SolveStatus.SOLVED)
+    assert captions.regions_of(many, 38, kind='rows') == ' '.join(map(str, range(1, 17)))
     for width in range(4, 38):
-        text = captions.heights_of(many, width)
+        text = captions.regions_of(many, width, kind='rows')
         assert len(text) <= width
         assert text[-1] == '…'
         assert list(map(int, text[:-1].split())) == list(range(1, text.count(' ') + 2))

@@ -3,10 +3,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from builders import row_regions
 
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.subgoals.decision import Candidate, Decision
-from blocks_planning.trials.messages import SubgoalChosen
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.record import DecisionRecord
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view import palette
@@ -34,8 +35,8 @@ def test_before_the_first_decision(tower_spec):
 def test_says_what_is_going_on(tower_spec, recorded):
     record = recorded(tower_spec())
     scenes = list(scenes_of(record))
-    height = record.decisions[0].decision.subgoals[0].height
-    assert lines_of(scenes[1])[3] == f'status     building rows {height}'
+    label = record.decisions[0].decision.subgoals[0].region.label
+    assert lines_of(scenes[1])[3] == f'status     building {label}'
     assert lines_of(scenes[-1])[3] == 'status     success'
 
 
@@ -50,17 +51,19 @@ def test_table_shows_every_candidate_of_a_scoping_decision(tower_spec, recorded)
     for index, (row, candidate) in enumerate(zip(rows, decision.candidates, strict=True)):
         assert row.startswith('▶') == (index == decision.chosen)
         height, cells, cost = row.lstrip('▶ ').split()[:3]
-        assert height == str(candidate.heights[0])
+        assert height == str(candidate.regions[0].label.numbers[0])
         assert cells == str(candidate.cells)
         assert cost == f'{candidate.planning_cost:,}'
 
 
 def with_candidates(scene: Scene, count: int, chosen: int | None) -> Scene:
     candidates = tuple(
-        Candidate(tuple(range(1, 17)), 256, 10**9 + index, -float(index), SolveStatus.SOLVED)
+        Candidate(
+            row_regions(*range(1, 17)), 256, 10**9 + index, -float(index), SolveStatus.SOLVED
+        )
         for index in range(count)
     )
-    decision = Decision(0, candidates, chosen, (), 10**13)
+    decision = Decision(0, candidates, chosen, (), 10**13, count)
     return replace(
         scene, chosen=SubgoalChosen(scene.spec.trial_id, 0, (DecisionRecord(0, decision, 0),))
     )

@@ -12,18 +12,20 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.registry import STRATEGIES, make_strategy
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import (
-    Message,
-    SubgoalChosen,
-    TrialEnded,
-    TrialStarted,
-    WorldState,
-)
+from blocks_planning.trials.messages import Message, TrialEnded, TrialStarted, WorldState
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
-from blocks_planning.view.scene import Scene, last_scene, scene_after, scene_of, scenes_of
+from blocks_planning.view.scene import (
+    Scene,
+    first_scene,
+    last_scene,
+    scene_after,
+    scene_of,
+    scenes_of,
+)
 
 
 def watched(spec: TrialSpec) -> tuple[list[Message], list[Scene], TrialRecord]:
@@ -109,8 +111,8 @@ def test_there_is_a_scene_for_everything_that_happens(tower_spec, recorded):
     assert scenes[0] == scene_of(record.spec)
     assert len(scenes) == 1 + record.subgoals + record.blocks + 1
     assert all(scene.status is TrialStatus.BUILDING for scene in scenes[:-2])
-    regions = [scene.subgoal.region for scene in scenes if scene.subgoal]
-    assert set(regions) == {subgoal.region for subgoal in record.executed_subgoals()}
+    regions = [scene.subgoal.target for scene in scenes if scene.subgoal]
+    assert set(regions) == {subgoal.target for subgoal in record.executed_subgoals()}
 
 
 def test_giving_up_is_a_scene(tower_spec, recorded):
@@ -126,7 +128,7 @@ def test_region_is_what_the_subgoal_has_left_to_fill(tower_spec, recorded):
     for scene in scenes_of(record):
         if scene.subgoal:
             assert scene.region & scene.built == 0
-            assert scene.region | scene.built == scene.subgoal.region | scene.built
+            assert scene.region | scene.built == scene.subgoal.target | scene.built
         assert scene.built & ~scene.task.silhouette == 0
 
 
@@ -158,7 +160,7 @@ def test_what_is_doubled_stale_or_foreign_changes_nothing(tower_spec):
 def test_another_trial_clears_the_scene(tower_spec):
     _, scenes, record = watched(tower_spec())
     again = TrialStarted('a second run', record.spec)
-    assert scene_after(scenes[-1], again) == Scene(again)
+    assert scene_after(scenes[-1], again) == first_scene(again)
 
 
 def test_the_order_of_states_and_subgoals_does_not_matter(tower_spec):

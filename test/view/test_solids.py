@@ -6,15 +6,16 @@ from collections import Counter
 from dataclasses import replace
 
 import pytest
-from builders import PLANNERS, TOWERS, planner_id, spec
+from builders import PLANNERS, TOWERS, as_ordered, planner_id, spec
 
 from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Board
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.subgoals.decision import Candidate, Decision, Subgoal
 from blocks_planning.subgoals.human import Human
+from blocks_planning.subgoals.regions import Region, rows_label
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import SubgoalChosen
 from blocks_planning.trials.record import DecisionRecord
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view import palette
@@ -30,15 +31,16 @@ PLACEMENTS = (Placed(2, 1, 0, 0), Placed(1, 1, 2, 0), Placed(1, 2, 0, 1), Placed
 def decision(placed: int, height: int, cost: int) -> DecisionRecord:
     """To fill the target rows below a height with the next two of the placements."""
     region = BOARD.rows_below(height) & SPEC.task.silhouette
-    subgoal = Subgoal(height, region, 2, PLACEMENTS[placed : placed + 2], cost, cost, 1)
-    candidate = Candidate((height,), 3, cost, 2.5, SolveStatus.SOLVED)
+    rows = Region(rows_label(height), region)
+    subgoal = Subgoal(rows, region, 2, PLACEMENTS[placed : placed + 2], cost, cost, 1)
+    candidate = Candidate((rows,), 3, cost, 2.5, SolveStatus.SOLVED)
     built = GROUND_ROW if placed else 0
-    return DecisionRecord(placed, Decision(built, (candidate,), 0, (subgoal,), 10 * cost), 1)
+    return DecisionRecord(placed, Decision(built, (candidate,), 0, (subgoal,), 10 * cost, 1), 1)
 
 
 SCENE = Scene(
     trial=scene_of(SPEC).trial,
-    placements=PLACEMENTS[:3],
+    observations=as_ordered(*PLACEMENTS[:3]),
     chosen=SubgoalChosen(SPEC.trial_id, 2, (decision(0, 1, 7), decision(2, 3, 9))),
 )
 """Two blocks of the first subgoal and one of the second stand; cell (2, 1) is still to fill."""

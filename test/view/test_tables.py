@@ -29,7 +29,7 @@ def test_counts_are_those_of_the_proposals(seed: int) -> None:
     kinds = [proposal.kind for proposal in done.proposals]
     seconds = [proposal.thinking_s for proposal in done.proposals]
     title, head, row = printed(done)
-    assert title[:3] == ['What', 'was', 'proposed;']
+    assert title[0] == 'Proposals;'
     assert head[:5] == ['participant', 'stimulus', 'proposed', 'built', 'withdrawn']
     assert head[5:] == ['thinking', 'each']
     assert row == [

@@ -2,8 +2,8 @@
 
 A kernel mask is one ``uint64`` on boards of up to 64 cells and a tuple of four on larger ones.
 ``& | ~ << >>``, :func:`count`, :func:`lowest`, :func:`without_lowest`,
-:func:`is_empty`, :func:`digest`, :func:`load` and :func:`store` mean the same for both, so a kernel is written once and compiled
-for each. Shift distances are ``uint64`` from 1 to 63.
+:func:`is_empty`, :func:`digest`, :func:`load`, :func:`store` and :func:`add_bit` mean the same for
+both, so a kernel is written once and compiled for each. Shift distances are ``uint64`` from 1 to 63.
 """
 
 from __future__ import annotations
@@ -129,6 +129,10 @@ def store(table, index, mask):
     """Write mask number ``index`` of a table."""
 
 
+def add_bit(table, index, bit):
+    """Set a bit of mask number ``index`` of a table."""
+
+
 def digest(mask):
     """A hash of a mask, uint64."""
 
@@ -210,6 +214,20 @@ def _store(table, index, mask):
             table[index, 3] = mask[3]
 
     return write
+
+
+@overload(add_bit)
+def _add_bit(table, index, bit):
+    if table.ndim == 1:
+
+        def set_bit(table, index, bit):
+            table[index] |= _ONE << np.uint64(bit)
+    else:
+
+        def set_bit(table, index, bit):
+            table[index, bit // WORD_BITS] |= _ONE << np.uint64(bit % WORD_BITS)
+
+    return set_bit
 
 
 @overload(digest)

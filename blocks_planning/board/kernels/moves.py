@@ -40,11 +40,23 @@ class Tables(NamedTuple):
     shadow: np.ndarray  # mask (blocks * cells,): of the block at each move; empty off the board
 
 
+class Footprints(NamedTuple):
+    """What the tables of all regions have in common, and the cells of each block at each bit."""
+
+    cells: tuple[tuple[Mask, ...], ...]  # by block and bit; none off the board
+    mask: np.ndarray  # mask (blocks * cells,): the same at each move
+    board: np.ndarray
+    width_shift: np.ndarray
+    width_step: np.ndarray
+    area: np.ndarray
+    shadow: np.ndarray
+
+
 def make_tables(task: Task, region: Mask) -> Tables:
     """The tables of a task and a region."""
-    board, library = task.board, task.library
+    board = task.board
     outside = board.full & ~region
-    footprints = _footprints(board, library)
+    footprints = footprints_of(board, task.library)
     legal = [
         sum(1 << bit for bit, cells in enumerate(block) if cells and not cells & outside)
         for block in footprints.cells
@@ -61,24 +73,15 @@ def make_tables(task: Task, region: Mask) -> Tables:
     )
 
 
-class _Footprints(NamedTuple):
-    """What the tables of all regions have in common, and the cells of each block at each bit."""
-
-    cells: list[list[Mask]]
-    board: np.ndarray
-    width_shift: np.ndarray
-    width_step: np.ndarray
-    area: np.ndarray
-    shadow: np.ndarray
-
-
 @lru_cache(maxsize=64)
-def _footprints(board: Board, library: Library) -> _Footprints:
+def footprints_of(board: Board, library: Library) -> Footprints:
+    """The footprints of the blocks of a library on a board."""
     shifts, steps = _width_steps(library, board.height)
     cells = [[_cells_at(board, block, bit) for bit in range(board.size)] for block in library]
     shadows = [rules.shadow(board, mask) for block in cells for mask in block]
-    return _Footprints(
-        cells=cells,
+    return Footprints(
+        cells=tuple(map(tuple, cells)),
+        mask=pack([mask for block in cells for mask in block], board.size),
         board=pack([board.full, board.full & ~board.ground], board.size),
         width_shift=np.array(shifts, dtype=np.uint64),
         width_step=np.array(steps, dtype=np.int64),

@@ -1,29 +1,33 @@
 """Node ``action_searcher``: how a region is filled, and the placements that fill it.
 
-Searches run in threads of their own, so that the node answers while they do; they stop as soon as
-their trial is over.
+Searches run in threads of their own, so that the node answers meanwhile; they stop as soon as
+their trial is over. The compiled parts of the searches are made ready in such a thread too, after
+the node has joined the graph; searches wait for it.
 
 | | |
 |---|---|
 | listens | `trial`, `state`, `subgoal`, `outcome` (latched), `search/request` (stream) |
 | says | `search/result`, `action` (stream), `plan` (latched) |
-| parameters | `remind_period_s`; `workers`: searches at once |
+| parameters | `remind_period_s`; `frame_id`; `workers`: searches at once |
 """
 
 from __future__ import annotations
 
 import threading
+import time
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
+from blocks_planning.ros.runtime.diagnostics import Health
 from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import PartNode
 from blocks_planning.ros.runtime.process import run
 from blocks_planning.ros.wire.graph import ACTION_SEARCHER
-from blocks_planning.search.compiled import warm_up
 from blocks_planning.search.result import CancelToken, Problem, SolveStatus
 from blocks_planning.search.solve import solve
+from blocks_planning.search.warming import warm_up
 from blocks_planning.trials import searcher
 from blocks_planning.trials.messages import (
     Message,
@@ -44,11 +48,19 @@ class ActionSearcher(PartNode):
         super().__init__(ACTION_SEARCHER, searcher, (WORKERS,), **options)
         self._cancel = CancelToken()
         self._threads = ThreadPoolExecutor(self.values['workers'], 'search')
+        self.is_compiling = False
+        self._may_search = threading.Event()
+        self._may_search.set()
         self._answers: deque[SearchAnswer | BaseException] = deque()
         self._counting = threading.Lock()
         self._running = 0
         self._evaluated = 0
-        self._wake = self.create_guard_condition(self._deliver)
+
+    def compile(self) -> None:
+        """Make the compiled parts of the searches ready, in a thread; searches wait for it."""
+        self.is_compiling = True
+        self._may_search.clear()
+        threading.Thread(target=self._compile, name='compile', daemon=True).start()
 
     def begin(self, trial: TrialStarted) -> None:
         """A new trial: what is searched for another one is of no use."""
@@ -68,6 +80,11 @@ class ActionSearcher(PartNode):
         assert self.trial is not None
         self._threads.submit(self._search, self.trial, message, self._cancel)
 
+    def health(self) -> Health:
+        """See :class:`PartNode`; the state is ``compiling`` until searches can be run."""
+        health = super().health()
+        return replace(health, state='compiling') if self.is_compiling else health
+
     def load(self) -> dict[str, object]:
         """See :class:`PartNode`; of the searches that were asked for in the trial."""
         running = self._running
@@ -78,8 +95,22 @@ class ActionSearcher(PartNode):
             'states_evaluated': self._evaluated,
         }
 
+    def _compile(self) -> None:
+        begun_s = time.monotonic()
+        self.get_logger().info('compiling the searches, which takes a while after a first start')
+        try:
+            warm_up()
+        except BaseException as error:  # noqa: BLE001  raised again in the node's own thread
+            self._answers.append(error)
+        else:
+            self.get_logger().info(f'compiled in {time.monotonic() - begun_s:.1f} s')
+        self.is_compiling = False
+        self._may_search.set()
+        self.call_soon(self._deliver)
+
     def _search(self, trial: TrialStarted, question: Solve, cancel: CancelToken) -> None:
         spec = trial.spec
+        self._may_search.wait()
         self._count_running(1)
         try:
             problem = Problem(spec.task, *question.query)
@@ -92,7 +123,7 @@ class ActionSearcher(PartNode):
             self._answers.append(SearchAnswer(trial.trial_id, question.query, result))
         finally:
             self._count_running(-1)
-        self._wake.trigger()
+        self.call_soon(self._deliver)
 
     def _count_running(self, change: int) -> None:
         with self._counting:
@@ -114,9 +145,14 @@ class ActionSearcher(PartNode):
 
 
 def main() -> None:
-    """Run the node until SIGINT or SIGTERM; kernels are compiled before it answers."""
-    warm_up()
-    run(lambda _: ActionSearcher())
+    """Run the node until SIGINT or SIGTERM."""
+
+    def make_node(_: threading.Event) -> ActionSearcher:
+        node = ActionSearcher()
+        node.compile()
+        return node
+
+    run(make_node)
 
 
 if __name__ == '__main__':

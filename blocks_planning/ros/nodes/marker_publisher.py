@@ -8,7 +8,7 @@ they are published, those between are never seen.
 |---|---|
 | listens | `trial`, `state`, `subgoal`, `outcome` (latched) |
 | says | `markers` (latched) |
-| parameters | `remind_period_s`; `cell_size`: side of a cell in metres; `frame_id`: of all markers; `publish_period_s`: a change is shown after at most so long |
+| parameters | `remind_period_s`; `frame_id`; `cell_size`: side of a cell in metres; `publish_period_s`: longest time until a change is shown |
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from typing import Any
 from rclpy.duration import Duration
 from std_msgs.msg import Header
 
-from blocks_planning.errors import ConfigurationError
 from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import ACKNOWLEDGE_S
 from blocks_planning.ros.runtime.process import run
@@ -30,7 +29,6 @@ from blocks_planning.view.scene import Scene
 from blocks_planning.view.solids import solids_of
 
 CELL_SIZE = Parameter('cell_size', 0.05, 'Side of a cell [m].', (1e-4, 100.0))
-FRAME_ID = Parameter('frame_id', 'board', 'Coordinate frame of all markers.')
 PUBLISH_PERIOD = Parameter(
     'publish_period_s', 0.05, 'A change is shown after at most so long [s].', (0.02, 60.0)
 )
@@ -40,16 +38,8 @@ class MarkerPublisher(Watcher):
     """Shows the latest scene if it is another one than was shown last."""
 
     def __init__(self, **options: Any) -> None:
-        """See :class:`PartNode`.
-
-        Raises:
-            ConfigurationError: also for a frame without a name.
-        """
-        super().__init__(MARKER_PUBLISHER, (CELL_SIZE, FRAME_ID, PUBLISH_PERIOD), **options)
-        if not self.values['frame_id']:
-            raise ConfigurationError(
-                f"node {self.get_name()}: parameter frame_id must be a name, got ''"
-            )
+        """See :class:`PartNode`."""
+        super().__init__(MARKER_PUBLISHER, (CELL_SIZE, PUBLISH_PERIOD), **options)
         self._shown: Scene | None = None
         self._outlet = self.create_publisher(MARKERS.ros_type, MARKERS.name, MARKERS.publisher_qos)
         self.create_timer(self.values['publish_period_s'], self._show, clock=self.steady)

@@ -1,10 +1,10 @@
-"""Node ``subgoal_selector``: which region comes next (none, scoping, full planning, a person).
+"""Node ``subgoal_selector``: which region comes next.
 
 | | |
 |---|---|
 | listens | `trial`, `state`, `subgoal/proposal`, `outcome` (latched), `search/result` (stream) |
 | says | `search/request` (stream), `subgoal` (latched) |
-| parameters | `remind_period_s` |
+| parameters | `remind_period_s`; `frame_id` |
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class SubgoalSelector(PartNode):
         super().receive(message)
 
     def load(self) -> dict[str, object]:
-        """See :class:`PartNode`; of the questions that were asked in the trial."""
+        """See :class:`PartNode`; of the queries that were asked in the trial."""
         waiting = [query for query in self.memory.asked if query not in self.memory.known]
         chosen = self.memory.chosen
         return {

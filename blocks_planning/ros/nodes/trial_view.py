@@ -9,7 +9,7 @@ by what this node knows, and said if it can be taken.
 | listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched) |
 | says | `subgoal/proposal` (latched) |
 | hears too | `/diagnostics` of the nodes in its namespace; `search/result`, unless no trial of its script is a person's: answers are many |
-| parameters | `remind_period_s`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none; `participant`: code of the person of its trials, '': as the script says |
+| parameters | `remind_period_s`; `frame_id`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none; `participant`: code of the person of its trials, '': as the script says |
 """
 
 from __future__ import annotations
@@ -34,7 +34,6 @@ from blocks_planning.ros.runtime.processes import PARENT_VARIABLE
 from blocks_planning.ros.wire import qos
 from blocks_planning.ros.wire.graph import TRIAL_VIEW
 from blocks_planning.ros.wire.topics import SEARCH_RESULT, Topic
-from blocks_planning.subgoals.human import Human
 from blocks_planning.trials.messages import Message
 from blocks_planning.trials.script import read_script
 from blocks_planning.trials.spec import TrialSpec
@@ -43,10 +42,8 @@ from blocks_planning.view.web import session
 from blocks_planning.view.web.frame import Seen
 from blocks_planning.view.web.guards import address_of
 from blocks_planning.view.web.health import NOTHING, health_after
-from blocks_planning.view.web.live import Mailbox
 from blocks_planning.view.web.proposing import Posted, Refused, judge, parse
 from blocks_planning.view.web.queue import Queue
-from blocks_planning.view.web.server import PageServer
 
 HOST = Parameter('host', '127.0.0.1', 'Name or number to listen at; a token off this machine.')
 PORT = Parameter('port', 0, 'Port to listen at; 0: any that is free.', (0, 65535))
@@ -70,8 +67,12 @@ class TrialView(PartNode):
         """See :class:`PartNode`.
 
         Raises:
-            ConfigurationError: also if the page can't be served there.
+            ConfigurationError: also if the page can't be served there, or what serves it is not
+                installed.
         """
+        from blocks_planning.view.web.live import Mailbox
+        from blocks_planning.view.web.server import PageServer
+
         super().__init__(TRIAL_VIEW, session, PARAMETERS, **options)
         script, participant = self.values['script'], self.values['participant']
         specs = read_script(Path(script), participant) if script else []
@@ -81,7 +82,6 @@ class TrialView(PartNode):
         self._health = NOTHING
         self._place = self._queue.place_of(None)
         self._posted: deque[tuple[Any, Future[Refused | None]]] = deque()
-        self._wake = self.create_guard_condition(self._take_posted)
         self._mailbox = Mailbox()
         self.create_subscription(
             DiagnosticArray, DIAGNOSTICS, self._receive_health, qos.stream(), raw=True
@@ -145,7 +145,7 @@ class TrialView(PartNode):
         """From the thread of the server: what a person has sent, to be judged in the node's own."""
         answer: Future[Refused | None] = Future()
         self._posted.append((data, answer))
-        self._wake.trigger()
+        self.call_soon(self._take_posted)
         return answer
 
     def _take_posted(self) -> None:
@@ -180,7 +180,7 @@ class TrialView(PartNode):
 
 
 def _is_persons(spec: TrialSpec) -> bool:
-    return isinstance(spec.strategy, Human)
+    return spec.strategy.asks_person
 
 
 def stand_back() -> None:

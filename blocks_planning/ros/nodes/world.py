@@ -1,14 +1,15 @@
-"""Node ``world``: the board, the only mutable truth.
+"""Node ``world``: the board, and what becomes of each order.
 
-Replace it by the driver of real hardware and nothing else has to change. With a ``journal_dir`` a
-world that was killed and started again goes on with the board of the running trial. What can't be
-written there is not done: the trial ends, and its outcome says why.
+The driver of real hardware can replace it; nothing else has to change. With a ``journal_dir`` a
+world that was killed and started again goes on with the board of the running trial. If the disk
+does not take an observation, the order is not carried out: the trial ends, and its outcome says
+why.
 
 | | |
 |---|---|
 | listens | `trial`, `outcome` (latched), `action` (stream) |
 | says | `state` (latched), `action/outcome` (stream) |
-| parameters | `remind_period_s`; `journal_dir`: folder of the journal; `placing_s`: how long placing a block takes |
+| parameters | `remind_period_s`; `frame_id`; `journal_dir`: folder of the journal; `placing_s`: how long placing a block takes |
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from blocks_planning.trials import world
 from blocks_planning.trials.messages import (
     Message,
     PlaceBlock,
+    PlacementCode,
     PlacementOutcome,
     TrialEnded,
     TrialStarted,
@@ -57,7 +59,7 @@ class World(PartNode):
         self._arm.cancel()
 
     def advance(self, message: Message) -> tuple[Message, ...]:
-        """See :class:`PartNode`; what is said is in the journal first."""
+        """See :class:`PartNode`; an observation is in the journal before it is published."""
         before = self.memory
         said = super().advance(message)
         if self._journal is None:
@@ -68,7 +70,7 @@ class World(PartNode):
             case PlaceBlock() if said:
                 try:
                     for state in (answer for answer in said if isinstance(answer, WorldState)):
-                        self._journal.append(state.placements[-1])
+                        self._journal.append(state.observations[-1])
                 except RecordError as error:
                     self.memory = before
                     return self._failure(message, str(error))
@@ -81,10 +83,11 @@ class World(PartNode):
         return said
 
     def _resume(self, journal: Journal, trial_id: str) -> tuple[Message, ...]:
-        """Go on where a trial was; or from an empty board, and say what was lost."""
+        """Go on where a trial was; or from the board as it was found, and say what was lost."""
+        found = self.memory.state.observations
         try:
-            placements, self._lost = journal.begin(trial_id)
-            memory = world.restored(self.memory, placements)
+            kept, self._lost = journal.begin(trial_id)
+            memory = world.restored(self.memory, (*found, *kept) if kept else ())
             if memory is None:
                 self._lost = journal.refuse()
             else:
@@ -102,7 +105,8 @@ class World(PartNode):
             throttle_duration_sec=WARN_PERIOD_S,
             throttle_time_source_type=self.steady,
         )
-        return (PlacementOutcome(action.trial_id, action.sequence, None, reason, failed=True),)
+        code = PlacementCode.FAILED
+        return (PlacementOutcome(action.trial_id, action.sequence, None, reason, code),)
 
     @property
     def is_busy(self) -> bool:
@@ -113,7 +117,8 @@ class World(PartNode):
         """See :class:`PartNode`."""
         state = self.memory.state
         return {
-            'blocks_placed': 0 if state is None else state.sequence,
+            'blocks_placed': 0 if state is None else len(state.placements),
+            'observations': 0 if state is None else len(state.observations),
             'placing': self._placing is not None,
             'journal': self._lost or ('none' if self._journal is None else 'kept'),
         }

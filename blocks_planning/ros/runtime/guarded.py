@@ -67,6 +67,12 @@ class GuardedNode(Node):
             topic.ros_type, topic.name, callback, topic.subscription_qos, raw=True
         )
 
+    def call_soon(self, callback: Callable[[], None]) -> None:
+        """Call something in the thread that spins this node; from any thread."""
+        executor = self.executor
+        if executor is not None:
+            executor.create_task(callback)
+
     def create_service(
         self, srv_type: Any, srv_name: str, callback: Callable[..., Any], **options: Any
     ) -> Any:

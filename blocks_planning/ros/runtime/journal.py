@@ -1,30 +1,39 @@
-"""The journal of the world: the placements of the running trial, written before they are said.
+"""The journal of the world: the observations of the running trial, written before they are said.
 
-A world that is started again in the middle of a trial finds its board here. What is written
-outlives any end of the process at once, and a power cut as soon as a thread of its own has seen
-it on disk: waiting for that would take longer than the rest of a placement. One file per trial,
-``<trial id>.journal``: a line ``blocks_planning/journal 1``, then ``width height column row`` for
-each placement. The last line may be torn; any other fault sets the file aside, and nothing is
-ever deleted but the journal of a trial that is over, or was left for ``MOST_KEPT`` others. One
-process at a time writes in a folder.
+A world that is started again in the middle of a trial finds its board here. A written line
+survives any end of the process at once, and a power cut as soon as a thread of its own has
+flushed it to disk: waiting for that would take longer than the rest of a placement. One file per
+trial, ``<trial id>.journal``: a line ``blocks_planning/journal 2``, then a line
+``order;landed;gone`` for each observation after the first. The order is ``width height column``,
+or empty; the blocks are ``width height column row``, divided by commas. Version 1, with a line
+``width height column row`` for each placement, is still read. The last line may be torn; any
+other fault sets the file aside, and nothing is deleted except the journal of a trial that is over,
+or was left for ``MOST_KEPT`` others. One process at a time writes in a folder.
 """
 
 from __future__ import annotations
 
 import os
 import re
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from hashlib import blake2b
 from itertools import count
 from pathlib import Path
 
-from blocks_planning.board.blocks import Placed
+from blocks_planning.board.blocks import Block, Placed, Placement
 from blocks_planning.errors import RecordError
 from blocks_planning.trials import disk
+from blocks_planning.worlds.observation import Blocks, Observation
 
-_HEADER = b'blocks_planning/journal 1'
-_LINE = re.compile(rb'(\d{1,2}) (\d{1,2}) (\d{1,2}) (\d{1,2})')
+_HEADER = b'blocks_planning/journal 2'
+_HEADER_1 = b'blocks_planning/journal 1'
+_NUMBER = rb'\d{1,2}'
+_BLOCK = b' '.join([_NUMBER] * 4)
+_BLOCKS = b'((?:' + _BLOCK + b'(?:,' + _BLOCK + b')*)?)'
+_LINE = re.compile(b'((?:' + b' '.join([_NUMBER] * 3) + b')?);' + _BLOCKS + b';' + _BLOCKS)
+_LINE_1 = re.compile(_BLOCK)
 SUFFIX = '.journal'
 MOST_KEPT = 16
 """Journals of trials that were left for others; one trial runs at a time."""
@@ -59,11 +68,11 @@ class Journal:
             os.close(self._lock)
             raise
 
-    def begin(self, trial_id: str) -> tuple[list[Placed], str]:
+    def begin(self, trial_id: str) -> tuple[list[Observation], str]:
         """Open the journal of a trial, and close any other; an empty one has no file.
 
         Returns:
-            (the placements that it has already; a warning, or '')
+            (the observations that it has already; a warning, or '')
 
         Raises:
             RecordError: if the disk does not take it, or does not give it back.
@@ -71,15 +80,15 @@ class Journal:
         self.close()
         self._path = path = self._folder / (_file_name(trial_id) + SUFFIX)
         try:
-            placements, warning = _read(path)
-            if placements:
-                self._open(path, placements)
+            observations, warning = _read(path)
+            if observations:
+                self._open(path, observations)
         except OSError as error:
             raise _unwritable(path, error) from None
-        return placements, warning
+        return observations, warning
 
-    def append(self, placed: Placed) -> None:
-        """Write a placement; it is on disk soon after.
+    def append(self, seen: Observation) -> None:
+        """Write an observation; it is on disk soon after.
 
         Raises:
             RecordError: if the disk does not take it; the journal is as it was.
@@ -92,13 +101,13 @@ class Journal:
                 descriptor = self._open(self._path, [])
             if self._failure is not None:
                 raise self._failure
-            disk.append(descriptor, _line(placed), sync=False)
+            disk.append(descriptor, _line(seen), sync=False)
         except OSError as error:
             raise _unwritable(self._path, error) from None
         self._disk.submit(self._sync, descriptor)
 
     def refuse(self) -> str:
-        """Set the open journal aside, for it can't be right, and begin an empty one.
+        """Set the open journal aside, because it cannot be right, and begin an empty one.
 
         Returns:
             a warning
@@ -137,14 +146,14 @@ class Journal:
         self._disk.shutdown()
         os.close(self._lock)
 
-    def _open(self, path: Path, placements: list[Placed]) -> int:
+    def _open(self, path: Path, observations: list[Observation]) -> int:
         """Write all anew, so that nothing torn is left, and open it for more."""
         for old in sorted(self._folder.glob(f'*{SUFFIX}'), key=_latest_first)[MOST_KEPT:]:
             old.unlink(missing_ok=True)
         temporary = path.with_suffix('.new')
         with temporary.open('wb') as file:
-            file.write(b''.join([_HEADER + b'\n', *map(_line, placements)]))
-            if placements:  # an empty journal is worth no waiting
+            file.write(b''.join([_HEADER + b'\n', *map(_line, observations)]))
+            if observations:  # an empty journal is worth no waiting
                 file.flush()
                 os.fsync(file.fileno())
         temporary.replace(path)
@@ -155,7 +164,7 @@ class Journal:
         return self._descriptor
 
     def _sync(self, descriptor: int) -> None:
-        """See a file, or the names in the folder, on disk; if not, the next placement fails."""
+        """See a file, or the names in the folder, on disk; if not, the next one fails."""
         try:
             os.fsync(descriptor)
         except OSError as error:
@@ -173,19 +182,54 @@ def _set_aside(path: Path) -> str:
     return aside.name
 
 
-def _read(path: Path) -> tuple[list[Placed], str]:
-    """The placements of a journal, and a warning if it was none."""
+def _read(path: Path) -> tuple[list[Observation], str]:
+    """The observations of a journal, and a warning if the file is none."""
     if not path.exists():
         return [], ''
     header, *lines = path.read_bytes().split(b'\n')
-    matches = [_LINE.fullmatch(line) for line in lines[:-1]]  # what follows the last is torn
-    if header != _HEADER or not all(matches):
+    pattern, parse = _FORMATS.get(header, _FORMATS[_HEADER])
+    matches = [pattern.fullmatch(line) for line in lines[:-1]]  # what follows the last is torn
+    if header not in _FORMATS or not all(matches):
         return [], f'{path} is not a journal; it was set aside as {_set_aside(path)}'
-    return [Placed(*map(int, match.groups())) for match in matches if match], ''
+    return [parse(match) for match in matches if match], ''
 
 
-def _line(placed: Placed) -> bytes:
-    return b'%d %d %d %d\n' % placed
+def _observation(match: re.Match[bytes]) -> Observation:
+    order, landed, gone = match.groups()
+    ordered = None
+    if order:
+        width, height, column = map(int, order.split())
+        ordered = Placement(Block(width, height), column)
+    return Observation(ordered, _blocks(landed), _blocks(gone))
+
+
+def _observation_1(match: re.Match[bytes]) -> Observation:
+    (placed,) = _blocks(match.group())
+    return Observation(placed.placement, (placed,))
+
+
+_FORMATS: dict[bytes, tuple[re.Pattern[bytes], Callable[[re.Match[bytes]], Observation]]] = {
+    _HEADER: (_LINE, _observation),
+    _HEADER_1: (_LINE_1, _observation_1),
+}
+
+
+def _blocks(text: bytes) -> Blocks:
+    return tuple(Placed(*map(int, part.split())) for part in text.split(b',') if part)
+
+
+def _line(seen: Observation) -> bytes:
+    order = () if seen.ordered is None else (*seen.ordered.block, seen.ordered.column)
+    parts = (_words(order), _listed(seen.landed), _listed(seen.gone))
+    return f'{";".join(parts)}\n'.encode()
+
+
+def _listed(blocks: Blocks) -> str:
+    return ','.join(_words(placed) for placed in blocks)
+
+
+def _words(numbers: Iterable[int]) -> str:
+    return ' '.join(map(str, numbers))
 
 
 def _latest_first(path: Path) -> float:

@@ -54,9 +54,11 @@ def declare(node: Node, parameters: tuple[Parameter, ...]) -> dict[str, Any]:
 
 def _declare(node: Node, parameter: Parameter, given: dict[str, Any]) -> Any:
     try:
-        return node.declare_parameter(
+        value = node.declare_parameter(
             parameter.name, parameter.default, parameter.descriptor()
         ).value
+        # An empty list on the command line has no type, and comes as no value.
+        return [] if value is None and isinstance(parameter.default, list) else value
     except (InvalidParameterTypeException, InvalidParameterValueException):
         wanted = type(parameter.default).__name__
         if parameter.range is not None:

@@ -8,18 +8,19 @@ from typing import Any, Protocol
 
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
+from std_msgs.msg import Header
 
 from blocks_planning.board.geometry import Board
-from blocks_planning.errors import InvalidInput
+from blocks_planning.errors import ConfigurationError, InvalidInput
 from blocks_planning.ros.runtime.diagnostics import Diagnostics, Health
 from blocks_planning.ros.runtime.guarded import GuardedNode, read_message
 from blocks_planning.ros.runtime.inbox import Inbox
 from blocks_planning.ros.runtime.parameters import Parameter, declare
 from blocks_planning.ros.runtime.peers import Peers
 from blocks_planning.ros.wire.graph import NodeTopics
-from blocks_planning.ros.wire.topics import TRIAL, Topic
+from blocks_planning.ros.wire.topics import STATE, TRIAL, Topic
 from blocks_planning.trials.consistency import Consistency
-from blocks_planning.trials.messages import Message, Remind, TrialEnded, TrialStarted
+from blocks_planning.trials.messages import Message, Remind, TrialEnded, TrialStarted, WorldState
 from blocks_planning.trials.spec import TrialSpec
 
 REMIND_PERIOD = Parameter(
@@ -28,7 +29,11 @@ REMIND_PERIOD = Parameter(
     'After so long without news, say again what nobody has answered [s].',
     (0.05, 3600.0),
 )
+FRAME_ID = Parameter('frame_id', 'board', 'Coordinate frame of the board, for every header.')
 ACKNOWLEDGE_S = 0.3
+_MOST_LEFT = 64
+_OLDER_STATES = 2
+"""So many states in a row that are older than the one known say that the board was set back."""
 
 
 class Part(Protocol):
@@ -44,12 +49,12 @@ class Part(Protocol):
 class PartNode(GuardedNode):
     """A node that owns one part's memory.
 
-    A message that can't be, or does not fit its trial, is refused with a warning and counted; one
-    of a trial that is not known yet waits; everything else is for the part to judge. What the
-    node has latched is said again while there is no news: a queue that was flooded has lost it.
+    A message that is impossible, or does not fit its trial, is refused with a warning and counted;
+    one of a trial that is not announced yet waits; the part judges everything else. While there is
+    no news, the node publishes its latched messages again: a queue that was flooded has lost them.
 
     Attributes:
-        MOST_KNOWN: trials that messages are taken of, the one that runs and those just before.
+        MOST_KNOWN: trials of which messages are taken, the one that runs and those just before.
     """
 
     MOST_KNOWN = 1
@@ -64,16 +69,24 @@ class PartNode(GuardedNode):
         """Subscribe to the node's topics and advertise what it says.
 
         Raises:
-            ConfigurationError: for a parameter that is unknown or out of its range.
+            ConfigurationError: for a parameter that is unknown or out of its range, and for a
+                frame without a name.
         """
         super().__init__(topics.name, **options)
-        self.values = declare(self, (REMIND_PERIOD, *parameters))
+        self.values = declare(self, (REMIND_PERIOD, FRAME_ID, *parameters))
+        if not self.values['frame_id']:
+            raise ConfigurationError(
+                f"node {self.get_name()}: parameter frame_id must be a name, got ''"
+            )
         self.trial: TrialStarted | None = None
         self._part = part
         self.memory = part.Memory()
         self._inbox = Inbox()
         self._has_news = False
         self._known: OrderedDict[str, Consistency] = OrderedDict()
+        self._left: OrderedDict[str, None] = OrderedDict()
+        self._is_over = False
+        self._older_states = 0
         self._latched: dict[Topic, Any] = {}
         self._said = {topic.kind: topic for topic in topics.says}
         events = PublisherEventCallbacks(matched=self._on_match)
@@ -101,6 +114,7 @@ class PartNode(GuardedNode):
             self.begin(message)
         if isinstance(message, TrialEnded):
             self._latched.clear()
+            self._is_over |= self.trial is not None and message.trial_id == self.trial.trial_id
         said = self.advance(message)
         self._has_news |= self.memory is not before and not isinstance(message, Remind)
         for answer in said:
@@ -116,7 +130,11 @@ class PartNode(GuardedNode):
         return said
 
     def receive(self, message: Message) -> None:
-        """A message from the graph that is as it must be."""
+        """A message from the graph that is well formed and fits its trial."""
+        if isinstance(message, WorldState):
+            known = getattr(self.memory, 'state', None)
+            is_older = known is not None and message.sequence < known.sequence
+            self._older_states = self._older_states + 1 if is_older else 0
         self.take(message)
 
     def health(self) -> Health:
@@ -138,13 +156,23 @@ class PartNode(GuardedNode):
         return {}
 
     def begin(self, trial: TrialStarted) -> None:
-        """Take note of the trial that runs."""
+        """Take note of the trial that runs.
+
+        A trial that is announced after its end runs again: what was said in it before is void.
+        """
         if self.trial is None or self.trial.trial_id != trial.trial_id:
-            self.trial = trial
             self._known.setdefault(trial.trial_id, Consistency(trial.spec))
-            self._known.move_to_end(trial.trial_id)
-            while len(self._known) > self.MOST_KNOWN:
-                self._known.popitem(last=False)
+        elif self._is_over:
+            self._known[trial.trial_id] = Consistency(trial.spec)
+        else:
+            return
+        self.trial, self._is_over, self._older_states = trial, False, 0
+        self._left.pop(trial.trial_id, None)
+        self._known.move_to_end(trial.trial_id)
+        while len(self._known) > self.MOST_KNOWN:
+            self._left[self._known.popitem(last=False)[0]] = None
+        while len(self._left) > _MOST_LEFT:
+            self._left.popitem(last=False)
 
     def cares_for(self, topic: Topic, spec: TrialSpec) -> bool:
         """Whether messages of a topic matter in a trial."""
@@ -162,14 +190,21 @@ class PartNode(GuardedNode):
         topic = self._said.get(type(message))
         if topic is None:
             self.perform(message)
-        elif topic is TRIAL:
-            self.publish(topic, topic.to_ros(message))
         else:
-            self.publish(topic, topic.to_ros(self.board, message))
+            board = None if self.trial is None else self.trial.spec.task.board
+            self.publish(topic, topic.to_ros(board, message))
+
+    def stamped(self, message: Any) -> Any:
+        """A message with the time and the frame in its header, and in those of its parts."""
+        stamp = self.get_clock().now().to_msg()
+        message.header = Header(stamp=stamp, frame_id=self.values['frame_id'])
+        for part in getattr(message, 'proposals', ()):
+            part.header = message.header
+        return message
 
     def publish(self, topic: Topic, message: Any) -> None:
         """Stamp and publish."""
-        message.header.stamp = self.get_clock().now().to_msg()
+        self.stamped(message)
         if topic.latched:
             self._latched[topic] = message
         self._outlets[topic.kind].publish(message)
@@ -186,36 +221,55 @@ class PartNode(GuardedNode):
         try:
             message = read_message(topic.ros_type, data)
             if topic is TRIAL:
-                converted = topic.from_ros(message)
+                converted = topic.from_ros(None, message)
             elif (known := self._known.get(message.trial_id)) is None:
-                self._inbox.hold(message.trial_id, (topic, data), len(data))
+                self._hold(topic, message, data)
                 return
             elif not self.cares_for(topic, known.spec):
                 return
             else:
-                converted = _convert(topic, known.spec.task.board, message)
+                converted = topic.from_ros(known.spec.task.board, message)
                 known.check(converted)
         except InvalidInput as error:
             self.refuse(f'a message on {topic.name}', error)
         else:
             self.receive(converted)
 
+    def _hold(self, topic: Topic, message: Any, data: bytes) -> None:
+        """Keep a message until its trial is announced.
+
+        Of a trial that was left it is late, and would be mistaken for a message of the next run
+        of that trial. Only the first state is the same in every run.
+        """
+        if message.trial_id not in self._left or (topic is STATE and message.sequence == 0):
+            self._inbox.hold(message.trial_id, (topic, data), len(data))
+
     def _on_match(self, status: QoSPublisherMatchedInfo) -> None:
-        """A listener came: it may have missed what was asked before."""
+        """Tell a new listener what it may have missed."""
         if status.current_count_change > 0 and self.trial is not None:
             self.take(Remind(self.trial.trial_id))
 
     def _remind(self) -> None:
         if self.trial is not None and not self._has_news:
+            if self._older_states >= _OLDER_STATES:
+                self._start_over(self.trial)
             self.take(Remind(self.trial.trial_id))
             for topic, message in list(self._latched.items()):
                 if message.trial_id == self.trial.trial_id:
                     self._outlets[topic.kind].publish(message)
         self._has_news = False
 
+    def _start_over(self, trial: TrialStarted) -> None:
+        """Forget what is known of the trial, as if this node had just been started.
 
-def _convert(topic: Topic, board: Board, message: Any) -> Message:
-    """What a ROS message of a trial on a board says."""
-    converted: Message
-    converted = topic.from_ros(board, message) if topic.needs_board else topic.from_ros(message)
-    return converted
+        The world shows an older board than this node knows: it was set back, or what this node
+        took for the latest state was a late message of an earlier run.
+        """
+        self.get_logger().warning(
+            f'trial {trial.trial_id}: the board was set back; starting over from what is there'
+        )
+        self._older_states = 0
+        self._latched = {topic: said for topic, said in self._latched.items() if topic is TRIAL}
+        self._known[trial.trial_id] = Consistency(trial.spec)
+        self.memory = self._part.Memory()
+        self.advance(trial)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import OrderedDict, defaultdict
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -13,6 +14,7 @@ from blocks_planning.ros.wire.topics import PROPOSAL, TOPICS, VIEW_TOPICS, Topic
 
 _UNKNOWN = '_NODE_NAME_UNKNOWN_'
 _MOST_NAMES = 10_000
+_FRESH_S = 5.0
 
 
 class Around(NamedTuple):
@@ -38,6 +40,9 @@ class Peers:
         """Nothing is looked for yet."""
         self._node = node
         self._names: OrderedDict[bytes, tuple[str, str]] = OrderedDict()
+        self._counts: list[int] = []
+        self._listed_s = 0.0
+        self._listed: defaultdict[str, set[_End]] = defaultdict(set)
 
     def missing(self, names: Iterable[str]) -> list[str]:
         """The nodes that are not there with all of their topics.
@@ -63,7 +68,23 @@ class Peers:
         return Around(present, missing)
 
     def _ends(self) -> defaultdict[str, set[_End]]:
-        """Which ends each node has."""
+        """Which ends each node has.
+
+        Listing them takes milliseconds, counting them far less: they are listed again when their
+        number has changed, and every ``_FRESH_S``.
+        """
+        counts = [
+            count(topic.name)
+            for topic in (*TOPICS, *VIEW_TOPICS)
+            for count in (self._node.count_publishers, self._node.count_subscribers)
+        ]
+        now_s = time.monotonic()
+        if counts != self._counts or now_s - self._listed_s >= _FRESH_S:
+            self._counts, self._listed_s = counts, now_s
+            self._listed = self._list_ends()
+        return self._listed
+
+    def _list_ends(self) -> defaultdict[str, set[_End]]:
         found: defaultdict[str, set[_End]] = defaultdict(set)
         for topic in (*TOPICS, *VIEW_TOPICS):
             name = self._node.resolve_topic_name(topic.name)
@@ -106,29 +127,3 @@ def _wanted(name: str) -> set[_End]:
     said: list[Topic | ViewTopic] = [*topics.says, *topics.views]
     says = {_End(True, topic.name) for topic in said}
     return says | {_End(False, topic.name) for topic in topics.listens}
-
-
-class Attendance:
-    """How long whoever is not there has been missing."""
-
-    def __init__(self) -> None:
-        """Nobody is missing."""
-        self._since: dict[str, float] = {}
-
-    def note(self, missing: Iterable[str], now_s: float) -> list[str]:
-        """Take note of who is missing at a moment [s]; return who has just gone."""
-        since = {name: self._since.get(name, now_s) for name in missing}
-        gone = [name for name in since if name not in self._since]
-        self._since = since
-        return gone
-
-    @property
-    def missing(self) -> list[str]:
-        """Who is missing."""
-        return list(self._since)
-
-    def overdue(self, now_s: float, bound_s: float, begin_s: float) -> str:
-        """Who has been missing for ``bound_s`` or longer since ``begin_s``, as a sentence; or ''."""
-        waited = {name: now_s - max(since, begin_s) for name, since in self._since.items()}
-        late = [f'{name} for {wait:.1f} s' for name, wait in waited.items() if wait >= bound_s]
-        return f'missing: {", ".join(late)}' if late else ''

@@ -6,8 +6,8 @@ thread; and a timer in C ends the process if taking the node down takes too long
 within a second, with exit code 0, also during a search; BLOCKS_PLANNING_EXIT_BOUND_S gives it
 more seconds.
 
-A process that was stopped for so long that all others dropped it begins anew, with the same process
-id: Fast DDS does not bring all of its topics back when it goes on.
+A process that was stopped for so long that all others dropped it re-executes itself, with the same
+process id: Fast DDS does not bring all of its topics back when it goes on.
 """
 
 from __future__ import annotations
@@ -29,13 +29,14 @@ import rclpy
 import rclpy.utilities
 from rclpy.context import Context
 from rclpy.exceptions import NameValidationException, ParameterException
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import Executor
+from rclpy.experimental import EventsExecutor
 from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from blocks_planning.errors import BlocksPlanningError, ConfigurationError
-from blocks_planning.ros.runtime.processes import PARENT_VARIABLE
+from blocks_planning.ros.runtime.processes import PARENT_VARIABLE, tell_ready
 from blocks_planning.ros.runtime.single import claim_name
 
 EXIT_BOUND_S = float(os.environ.get('BLOCKS_PLANNING_EXIT_BOUND_S', '0.9'))
@@ -45,6 +46,7 @@ _LOOK_FOR_PARENT_S = 0.5
 STOOD_STILL_S = 4.5
 """Less than the lease in config/loopback.xml, after which others take a node for dead."""
 _MOST_WORK = 0.1
+_AGAIN_VARIABLE = 'BLOCKS_PLANNING_STARTED_AGAIN'
 BAD_INPUT = 2
 CRASHED = 3
 
@@ -65,18 +67,23 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
     """
     prepare_environment()
     stop = threading.Event()
-    began = _look_at_clocks()  # before there is anybody to drop it
+    made: list[str] = []
+    watching = threading.Thread(target=_watch, args=(stop, made), name='watch', daemon=True)
+    watching.start()  # before the first end of a topic exists that others could drop
     try:
         initialise(args)
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda received, _: _on_signal(stop, received))
         node = make_node(stop)
+        made.append(node.get_fully_qualified_name())
         claim = claim_name(node.context.get_domain_id(), node.get_fully_qualified_name())
+        node.get_logger().info('ready')
+        tell_ready()
     except (BlocksPlanningError, ParameterException, NameValidationException) as error:
         sys.stderr.write(f'Error: {" ".join(str(error).split())}\n')
         _leave(BAD_INPUT)
     failures: list[BaseException] = []
-    executor = SingleThreadedExecutor()
+    executor = EventsExecutor()  # the others make their set of things to wait for anew each time
     executor.add_node(node)
     spinning = threading.Thread(
         target=_spin,
@@ -85,7 +92,7 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
         daemon=True,
     )
     spinning.start()
-    _wait(stop, began, node.get_fully_qualified_name())
+    _wait(stop)
     _arm_exit()
     spinning.join(EXIT_BOUND_S / 2)  # a callback that is still busy is not torn down under
     if not spinning.is_alive():
@@ -135,17 +142,38 @@ def _leave(code: int) -> NoReturn:
     os._exit(code)
 
 
-def _wait(stop: threading.Event, looked: tuple[float, float], name: str) -> None:
+def _wait(stop: threading.Event) -> None:
     """Wait for the end; it also comes when the bring-up that started this process is gone."""
     parent = os.environ.get(PARENT_VARIABLE)
     while not stop.wait(_LOOK_FOR_PARENT_S):
         if parent is not None and os.getppid() != int(parent):
             stop.set()
+
+
+def _watch(stop: threading.Event, made: list[str]) -> None:
+    """Begin anew if this process was stopped for longer than others wait for it.
+
+    A thread of its own looks at the clocks, so that a node that is made slowly counts as running.
+    A node that is made without ever letting this thread run looks stopped, so that is forgiven
+    the second time.
+
+    Args:
+        stop: is set when the process ends.
+        made: the name of the node, once it is made.
+    """
+    looked = _look_at_clocks()
+    while not stop.wait(_LOOK_FOR_PARENT_S):
         before, looked = looked, _look_at_clocks()
         passed_s, worked_s = looked[0] - before[0], looked[1] - before[1]
-        if stood_still(passed_s, worked_s):
-            sys.stderr.write(f'{name} stood still for {passed_s:.1f} s, and begins anew\n')
-            _begin_anew()
+        if not stood_still(passed_s, worked_s):
+            continue
+        if not made and os.environ.get(_AGAIN_VARIABLE):
+            continue
+        if not made:
+            os.environ[_AGAIN_VARIABLE] = '1'
+        name = ''.join(made) or 'a node that was starting'
+        sys.stderr.write(f'{name} was stopped for {passed_s:.1f} s, and starts again\n')
+        _begin_anew()
 
 
 def _look_at_clocks() -> tuple[float, float]:
@@ -164,7 +192,7 @@ def stood_still(passed_s: float, worked_s: float) -> bool:
 
 
 def _begin_anew() -> NoReturn:
-    """Be the same program again, in the same process, as if it had been killed and started."""
+    """Re-exec this process, as if it had been killed and started."""
     sys.stderr.flush()
     for name in os.listdir('/proc/self/fd'):  # noqa: PTH208  numbers, not paths
         if int(name) > 2:  # sockets of the middleware would stay open
@@ -174,7 +202,7 @@ def _begin_anew() -> NoReturn:
 
 
 def _spin(
-    executor: SingleThreadedExecutor,
+    executor: Executor,
     stop: threading.Event,
     failures: list[BaseException],
     drain_s: float,

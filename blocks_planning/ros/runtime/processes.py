@@ -12,12 +12,28 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 MOST_DEATHS = 8
+"""So many crashes in a row, and a node is given up."""
+MOST_KILLS = 64
+"""So many kills from outside in a row, each before the node was ready: something is wrong."""
 STABLE_S = 5.0
-"""Who has run for so long is forgiven all its deaths."""
+"""A node that has been ready for this time is forgiven all its deaths."""
+FROM_OUTSIDE = (0, *(-number for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)))
+"""Exit codes of a process that was ended by another."""
 _FIRST_PAUSE_S = 0.1
 _LONGEST_PAUSE_S = 3.2
 STOP_BOUND_S = 2.0
 PARENT_VARIABLE = 'BLOCKS_PLANNING_PARENT'
+READY_VARIABLE = 'BLOCKS_PLANNING_READY'
+"""The file descriptor on which a node tells its bring-up that it is ready."""
+
+
+def tell_ready() -> None:
+    """Tell the bring-up that started this process, if one did, that the node is ready."""
+    number = os.environ.pop(READY_VARIABLE, '')
+    if number:
+        with suppress(OSError):  # the bring-up is gone, or this process has re-executed itself
+            os.write(int(number), b'ready')
+            os.close(int(number))
 
 
 @dataclass
@@ -28,7 +44,9 @@ class NodeProcess:
         name: of the executable.
         arguments: behind ``--ros-args``.
         restarts: how often it was started again.
-        deaths: how often in a row it died soon after its start.
+        deaths: how often in a row it crashed soon after it was ready, or before.
+        kills: how often in a row another process ended it before it was ready.
+        is_given_up: whether it is not started again.
     """
 
     name: str
@@ -36,8 +54,11 @@ class NodeProcess:
     environment: Mapping[str, str]
     restarts: int = 0
     deaths: int = 0
+    kills: int = 0
+    is_given_up: bool = False
     _process: subprocess.Popen[bytes] | None = field(default=None, repr=False)
-    _started: float = 0.0
+    _ready: int | None = field(default=None, repr=False)
+    _ready_at: float | None = None
     _again_at: float | None = None
 
     def start(self) -> None:
@@ -49,10 +70,22 @@ class NodeProcess:
             self.name,
             '--ros-args',
         ]
-        command += ['--disable-external-lib-logs', *self.arguments]
-        environment = {**self.environment, PARENT_VARIABLE: str(os.getpid())}
-        self._started = time.monotonic()
-        self._process = subprocess.Popen(command, env=environment, start_new_session=True)
+        command += ['--disable-external-lib-logs', '--log-level', 'warn', *self.arguments]
+        self._close_ready()
+        self._ready, told = os.pipe()
+        os.set_blocking(self._ready, False)
+        environment = {
+            **self.environment,
+            PARENT_VARIABLE: str(os.getpid()),
+            READY_VARIABLE: str(told),
+        }
+        try:
+            self._process = subprocess.Popen(
+                command, env=environment, start_new_session=True, pass_fds=(told,)
+            )
+        finally:
+            os.close(told)
+        self._ready_at = None
 
     @property
     def pid(self) -> int:
@@ -67,26 +100,50 @@ class NodeProcess:
     def keep_alive(self) -> bool:
         """Start the process again some time after it died; return False if it does so too often.
 
-        To be called some times a second.
+        A crash counts, unless the node had been ready for a while. A kill from outside counts
+        only if the node had not even been ready. To be called some times a second.
         """
-        if self._process is None:
+        if self._process is None or self.is_given_up:
             return True
         now = time.monotonic()
-        if self._again_at is None and now - self._started >= STABLE_S:
-            self.deaths = 0
+        self._look_whether_ready(now)
         if self._process.poll() is None:
             return True
         if self._again_at is None:
-            self.deaths += 1
-            pause_s = min(_FIRST_PAUSE_S * 2 ** (self.deaths - 1), _LONGEST_PAUSE_S)
+            self._count_death(self._process.returncode)
+            in_a_row = max(1, self.deaths + self.kills)
+            pause_s = min(_FIRST_PAUSE_S * 2 ** (in_a_row - 1), _LONGEST_PAUSE_S)
             self._again_at = now + pause_s
-        if self.deaths > MOST_DEATHS:
+        if self.deaths > MOST_DEATHS or self.kills > MOST_KILLS:
             return False
         if now >= self._again_at:
             self.restarts += 1
             self._again_at = None
             self.start()
         return True
+
+    def _look_whether_ready(self, now: float) -> None:
+        if self._ready_at is None and self._ready is not None:
+            with suppress(BlockingIOError):
+                if os.read(self._ready, 16):
+                    self._ready_at = now
+                self._close_ready()  # also if the process has ended without a word
+        lives = self._ready_at is not None and self._again_at is None
+        if lives and now - (self._ready_at or now) >= STABLE_S:
+            self.deaths = self.kills = 0
+
+    def _count_death(self, code: int) -> None:
+        if code not in FROM_OUTSIDE:
+            self.deaths += 1
+        elif self._ready_at is None:
+            self.kills += 1
+        else:
+            self.kills = 0
+
+    def _close_ready(self) -> None:
+        if self._ready is not None:
+            os.close(self._ready)
+            self._ready = None
 
     def signal(self, number: int) -> None:
         """Send a signal, if the process is there to take it."""
@@ -96,6 +153,7 @@ class NodeProcess:
 
     def wait(self, deadline: float) -> None:
         """Wait for the process to end, and end it at the deadline (of the monotonic clock)."""
+        self._close_ready()
         if self._process is None:
             return
         try:

@@ -1,4 +1,4 @@
-"""Who listens to what, and who says what."""
+"""Which node listens to what, and which says what."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from blocks_planning.ros.wire.topics import (
 
 
 class NodeTopics(NamedTuple):
-    """A node by its name, and its topics; ``views`` is what it says to viewers alone."""
+    """A node by its name, and its topics; ``views`` is what it publishes for viewers only."""
 
     name: str
     listens: tuple[Topic, ...]
@@ -68,5 +68,6 @@ GRAPH = {
     )
 }
 
-VIEWERS = (MARKER_PUBLISHER.name, TRIAL_VIEW.name, WATCHER.name)
-"""Who only looks: a script waits for them at its beginning, but no trial ends because they go."""
+LISTENERS = (BAG_RECORDER.name, MARKER_PUBLISHER.name, TRIAL_VIEW.name, WATCHER.name)
+"""Nodes that only record or show: a script waits for them at its beginning, but no trial ends
+because they are gone."""

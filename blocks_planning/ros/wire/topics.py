@@ -1,16 +1,16 @@
 """The topics of the graph: one table, from which nodes, the recorder and the tests work.
 
-| topic | says | QoS |
+| topic | content | QoS |
 |---|---|---|
-| `trial` | which trial runs | latched |
-| `state` | the board | latched |
-| `search/request`, `search/result` | what filling a region takes | stream |
-| `subgoal/proposal` | a person's word on what to build next | latched, all |
-| `subgoal` | which region comes next, and all decisions so far | latched |
+| `trial` | the trial that runs | latched |
+| `state` | the board, and all that was observed of it | latched |
+| `search/request`, `search/result` | what filling a target takes | stream |
+| `subgoal/proposal` | what a person proposes to build next | latched, all |
+| `subgoal` | the subgoal that comes next, and all decisions so far | latched |
 | `plan` | the placements about to be carried out | latched |
 | `action`, `action/outcome` | a block to drop, and what became of it | stream |
-| `outcome` | how the trial ended; everybody stops working on it | latched |
-| `markers` | the tower in space, for viewers alone | latched |
+| `outcome` | how the trial ended; every node stops working on it | latched |
+| `markers` | the tower in space, for viewers only | latched |
 
 Names are relative: a namespace or a remap moves the whole graph.
 """
@@ -25,39 +25,41 @@ from rclpy.qos import QoSProfile
 from visualization_msgs.msg import MarkerArray
 
 from blocks_planning.ros.wire import qos
-from blocks_planning.ros.wire.conversions import board, decisions, search, trial
+from blocks_planning.ros.wire.conversions import board, decisions, proposals, search, trial
 from blocks_planning.trials import messages as core
+from blocks_planning.trials.execution import SubgoalChosen
 
 
 class Topic(NamedTuple):
     """A topic, and how its messages are converted.
 
-    ``from_ros`` takes the board of the trial that runs, but on `trial` and `outcome`.
-    ``to_ros`` takes it too, but on `trial`; on `outcome` it takes a trial's id and its record.
-    ``depth`` is how many of a latched topic's messages reach who comes late.
+    Attributes:
+        name: relative.
+        ros_type: of its messages.
+        kind: the message of :mod:`blocks_planning.trials` that they stand for.
+        to_ros: ``to_ros(board, message)``; the board is that of the trial. `trial` and `outcome`
+            need none and take None.
+        from_ros: ``from_ros(board, message)``, its inverse but for headers and usual sentences.
+        latched: whether a node that starts late gets what was published before.
+        depth: number of a latched topic's messages that it gets.
     """
 
     name: str
     ros_type: type[Any]
     kind: type[Any]
-    to_ros: Callable[..., Any]
-    from_ros: Callable[..., Any]
+    to_ros: Callable[[Any, Any], Any]
+    from_ros: Callable[[Any, Any], Any]
     latched: bool = False
     depth: int = 1
 
     @property
-    def needs_board(self) -> bool:
-        """Whether ``from_ros`` takes the board of the trial that runs."""
-        return self.kind not in (core.TrialStarted, core.TrialEnded)
-
-    @property
     def publisher_qos(self) -> QoSProfile:
-        """For who says it."""
+        """Of its publishers."""
         return qos.latched_state(self.depth) if self.latched else qos.stream()
 
     @property
     def subscription_qos(self) -> QoSProfile:
-        """For who listens."""
+        """Of its subscriptions."""
         return qos.every_latched_state() if self.latched else qos.stream()
 
 
@@ -95,15 +97,15 @@ PROPOSAL = Topic(
     'subgoal/proposal',
     ros.Proposal,
     core.ProposalMade,
-    decisions.proposal_to_ros,
-    decisions.proposal_from_ros,
+    proposals.proposal_to_ros,
+    proposals.proposal_from_ros,
     latched=True,
     depth=qos.STREAM_DEPTH,
 )
 SUBGOAL = Topic(
     'subgoal',
     ros.Subgoal,
-    core.SubgoalChosen,
+    SubgoalChosen,
     decisions.subgoal_to_ros,
     decisions.subgoal_from_ros,
     latched=True,
@@ -125,7 +127,7 @@ OUTCOME = Topic(
     'outcome',
     ros.TrialOutcome,
     core.TrialEnded,
-    trial.outcome_to_ros,
+    trial.ended_to_ros,
     trial.ended_from_ros,
     latched=True,
 )
@@ -152,12 +154,12 @@ class ViewTopic(NamedTuple):
 
     @property
     def publisher_qos(self) -> QoSProfile:
-        """For who says it."""
+        """Of its publishers."""
         return qos.latched_state()
 
     @property
     def subscription_qos(self) -> QoSProfile:
-        """For who listens, and is to miss none."""
+        """Of subscriptions that must miss nothing."""
         return qos.every_latched_state()
 
 

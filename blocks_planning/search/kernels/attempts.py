@@ -11,24 +11,30 @@ from typing import NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from blocks_planning.board.kernels.compiling import kernel
-from blocks_planning.board.kernels.masks import load
-from blocks_planning.search.kernels import best_first, breadth_first, random_placement
+from blocks_planning.board.kernels.compiling import inlined
+from blocks_planning.search.kernels import (
+    beam,
+    best_first,
+    breadth_first,
+    lookahead,
+    random_placement,
+    tree_search,
+)
 from blocks_planning.search.kernels.outcomes import CANCELLED, STUCK
 from blocks_planning.search.kernels.randomness import seed
 
 _ATTEMPTS = {
     random_placement.RandomPlacement: random_placement.attempt,
-    breadth_first.BreadthFirst: breadth_first.attempt,
+    lookahead.BreadthFirst: breadth_first.attempt,
     best_first.BestFirst: best_first.attempt,
+    beam.Beam: beam.attempt,
+    tree_search.TreeSearch: tree_search.attempt,
 }
 
 
-class Question(NamedTuple):
-    """What is asked of a search; ``mask`` as in the tables."""
+class Conditions(NamedTuple):
+    """Under which attempts are made, and their memory."""
 
-    shadow: np.ndarray  # mask (1,): of the state
-    filled: int  # of the state [cells]
     seed_words: np.ndarray  # uint64 (9,): trial seed, state, region
     budget: int  # [states]
     generator: np.ndarray  # uint64 (1,): memory
@@ -54,29 +60,40 @@ def _attempt(search, tables, shadow, filled, generator, cancel, path):
     return run
 
 
-@kernel
-def run_attempts(search, tables, question):
+@inlined
+def run_attempts(search, tables, shadow, filled, conditions):
     """Make attempts until one is complete or cancelled, or the budget is reached.
 
     There is always one attempt, and there are at most as many as the budget has states, so that
     attempts that cost nothing come to an end.
 
+    Args:
+        search: which one it is, by its type.
+        tables: of the region.
+        shadow: of the state, a mask.
+        filled: of the state [cells].
+        conditions: see :class:`Conditions`.
+
     Returns:
         (outcome of the last attempt, its number of moves, its states evaluated, states evaluated
         in all attempts, number of attempts)
     """
-    generator = question.generator
-    shadow = load(question.shadow, 0)
     total = 0
     number = 0
     while True:
-        if question.cancel[0] != 0:
+        if conditions.cancel[0] != 0:
             return CANCELLED, 0, 0, total, number
-        seed(generator, question.seed_words, number)
+        seed(conditions.generator, conditions.seed_words, number)
         outcome, length, cost = attempt(
-            search, tables, shadow, question.filled, generator, question.cancel, question.path
+            search,
+            tables,
+            shadow,
+            filled,
+            conditions.generator,
+            conditions.cancel,
+            conditions.path,
         )
         total += cost
         number += 1
-        if outcome != STUCK or total >= question.budget or number >= question.budget:
+        if outcome != STUCK or total >= conditions.budget or number >= conditions.budget:
             return outcome, length, cost, total, number

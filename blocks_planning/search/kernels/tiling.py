@@ -1,7 +1,8 @@
 """One step of the dynamic program that tiles a region: fill the first empty cell. Compiled.
 
 A *layer* holds the different sets of filled cells that are reached when all cells up to some cell
-are filled, with the fewest blocks and the number of arrangements for each.
+are filled, with the fewest blocks, the number of arrangements, and the number of those with the
+fewest blocks for each.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ class Layer(NamedTuple):
     filled: np.ndarray  # mask (n,)
     fewest: np.ndarray  # int64 (n,) [blocks]
     arrangements: np.ndarray  # uint64 (n, words): little-endian; no words if not counted
+    optimal: np.ndarray  # uint64 (n, words): the arrangements that have the fewest blocks
     parent: np.ndarray  # int32 (n,): a state of the layer before, on a way with fewest blocks
     move: np.ndarray  # int16 (n,): the move that led here from it, or NO_MOVE
 
@@ -41,6 +43,7 @@ def make_layer(size: int, mask_shape: tuple[int, ...], words: int) -> Layer:
         filled=np.empty((size, *mask_shape), np.uint64),
         fewest=np.empty(size, np.int64),
         arrangements=np.empty((size, words), np.uint64),
+        optimal=np.empty((size, words), np.uint64),
         parent=np.empty(size, np.int32),
         move=np.empty(size, np.int16),
     )
@@ -118,6 +121,10 @@ def fill_cell(layer, size, cell, rectangles, moves, following, slots, cancel):
                 following.fewest[index] = blocks
                 following.parent[index] = state
                 following.move[index] = move
+                for word in range(following.optimal.shape[1]):
+                    following.optimal[index, word] = layer.optimal[state, word]
+            elif blocks == following.fewest[index]:  # no more than all, so it can't overflow first
+                _add(following.optimal, index, layer.optimal, state)
             if _add(following.arrangements, index, layer.arrangements, state):
                 return OVERFLOW, generated
     return reached, generated

@@ -15,6 +15,7 @@ from blocks_planning.view.web.health import NOTHING, Health, health_json
 from blocks_planning.view.web.pictures import Json
 from blocks_planning.view.web.queue import Place
 from blocks_planning.view.web.session import Session, Turn, answer_to, turn_of
+from blocks_planning.worlds.observation import mask_of, standing
 
 MOST_WORDS = 20
 """Proposals that are listed; the last ones."""
@@ -29,11 +30,11 @@ class Seen(NamedTuple):
 
 
 def hides_costs(session: Session) -> bool:
-    """Whether nothing of what was evaluated may leave now, of whichever trial.
+    """Whether planning costs of any trial must not be sent now.
 
     From the start of a trial that hides its costs until another one begins.
     """
-    return session.scene is not None and pictures.hides_costs(session.scene.spec)
+    return session.scene is not None and session.scene.spec.strategy.hides_costs
 
 
 def frame_json(seen: Seen, now_s: float) -> Json:
@@ -90,7 +91,7 @@ def _turn_json(turn: Turn | None) -> Json | None:
 def _proposals_json(session: Session, scene: Scene, hidden: bool) -> list[Json]:
     """What the person has said in this trial, with what became of it."""
     decided = scene.record.proposals
-    last = scene.chosen.decisions[-1].placed if scene.chosen is not None else -1
+    last = scene.chosen.decisions[-1].sequence if scene.chosen is not None else -1
     said = [*decided, *(p for p in session.proposals if p.sequence > last)]
     return [_told(session, scene, proposal, hidden) for proposal in said[-MOST_WORDS:]]
 
@@ -114,19 +115,16 @@ def _outcome(scene: Scene, proposal: Proposal, answer: SolveResult | None) -> st
     if answer is not None:
         return 'built' if answer.solved else 'failed'
     entries = () if scene.chosen is None else scene.chosen.decisions
-    taken = [entry.decision for entry in entries if entry.placed == proposal.sequence]
+    taken = [entry.decision for entry in entries if entry.sequence == proposal.sequence]
     if not taken:
         return 'searching'
     # It was answered before this page was there.
     target = target_of(scene.task, taken[0].built, proposal.region)
-    return 'built' if target in [subgoal.region for subgoal in taken[0].subgoals] else 'failed'
+    return 'built' if target in [subgoal.target for subgoal in taken[0].subgoals] else 'failed'
 
 
 def _built_at(session: Session, scene: Scene, sequence: int) -> int:
-    """The filled cells after so many placements."""
+    """The filled cells in the state of an observation."""
     if session.state is not None and session.state.sequence == sequence:
         return session.state.built
-    cells = 0
-    for placed in scene.placements[:sequence]:
-        cells |= scene.task.board.rectangle(placed.column, placed.row, placed.width, placed.height)
-    return cells
+    return mask_of(scene.task.board, standing(scene.observations[: sequence + 1]))

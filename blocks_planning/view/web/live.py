@@ -9,10 +9,12 @@ import asyncio
 import json
 import time
 
-from aiohttp import WSMsgType, web
-
+from blocks_planning.extras import extra
 from blocks_planning.view.web.frame import Seen, frame_json, hides_costs
 from blocks_planning.view.web.pictures import replay_json, summary_json
+
+with extra('page'):
+    from aiohttp import WSMsgType, web
 
 FRAME_S = 0.1
 """Frames are not closer than this [s]."""

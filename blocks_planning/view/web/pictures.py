@@ -11,7 +11,6 @@ from typing import Any
 from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.settings import settings_of
 from blocks_planning.subgoals.decision import Decision
-from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
@@ -22,11 +21,6 @@ from blocks_planning.view.web.session import MOST_CANDIDATES, Past
 
 Json = dict[str, Any]
 MOST_PLANNED = 64
-
-
-def hides_costs(spec: TrialSpec) -> bool:
-    """Whether the person of a trial must not see what was evaluated."""
-    return isinstance(spec.strategy, Human) and spec.strategy.costs == 'hidden'
 
 
 def rows_of(board: Board, mask: Mask) -> list[str]:
@@ -47,18 +41,17 @@ def trial_json(spec: TrialSpec, trial_id: str) -> Json:
         'library': [list(block) for block in spec.task.library],
         'strategy': captions.strategy_of(spec),
         'search': captions.search_of(spec),
-        'lambda': settings_of(strategy).get('lambda'),
         'seed': str(spec.seed),
         'budget': spec.budget,
-        'person': isinstance(strategy, Human),
-        'participant': strategy.participant if isinstance(strategy, Human) else '',
-        'costs_hidden': hides_costs(spec),
+        'person': strategy.asks_person,
+        'participant': str(settings_of(strategy).get('participant', '')),
+        'costs_hidden': strategy.hides_costs,
     }
 
 
 def blocks_json(scene: Scene) -> list[Json]:
-    """What stands, each block with its subgoal and its colours."""
-    fills = palette.fills_of(scene.blocks)
+    """Every block that has landed, with its subgoal and its colours."""
+    fills = palette.fills_of(scene.landed)
     return [
         {
             'width': block.placed.width,
@@ -69,7 +62,7 @@ def blocks_json(scene: Scene) -> list[Json]:
             'fill': fill,
             'ink': palette.ink_on(fill),
         }
-        for block, fill in zip(scene.blocks, fills, strict=True)
+        for block, fill in zip(scene.landed, fills, strict=True)
     ]
 
 
@@ -83,7 +76,7 @@ def decision_json(decision: Decision, hidden: bool) -> Json | None:
         'cost': decision.subgoal_planning_cost,
         'candidates': [
             {
-                'rows': list(candidate.heights),
+                'label': captions.chain_text(candidate.regions),
                 'cells': candidate.cells,
                 'cost': candidate.planning_cost,
                 'value': candidate.value,
@@ -100,22 +93,25 @@ def step_json(scene: Scene, hidden: bool) -> Json:
     """What changes while a trial runs."""
     record, board = scene.record, scene.task.board
     step: Json = {
-        'blocks': len(scene.placements),
+        'sequence': scene.sequence,
+        'standing': list(scene.standing),
         'entry': len(record.decisions) - 1,
         'subgoals': record.subgoals,
         'status': scene.status.value,
         'word': captions.STATUS_WORDS[scene.status],
         'region': None,
         'planned': [],
-        'height': None,
+        'label': '',
+        'top': 0,
         'colour': palette.colour_of(max(record.subgoals - 1, 0)),
     }
-    if scene.subgoal is not None and scene.chosen is not None:
-        done = len(scene.placements) - scene.chosen.sequence
-        planned = scene.subgoal.placements[: scene.subgoal.execute]
+    if scene.subgoal is not None:
+        done = 0 if scene.progress is None else scene.progress.done
+        planned = scene.subgoal.placements[done : scene.subgoal.execute]
         step['region'] = rows_of(board, scene.region) if scene.region else None
-        step['planned'] = [list(placed) for placed in planned[max(done, 0) :][:MOST_PLANNED]]
-        step['height'] = scene.subgoal.height if scene.region else None
+        step['planned'] = [list(placed) for placed in planned[:MOST_PLANNED]]
+        step['label'] = scene.label
+        step['top'] = scene.top if scene.region else 0
     if not hidden:
         step['action_cost'] = record.action_planning_cost
         step['subgoal_cost'] = record.subgoal_planning_cost
@@ -123,7 +119,7 @@ def step_json(scene: Scene, hidden: bool) -> Json:
 
 
 def curve_json(record: TrialRecord, hidden: bool) -> list[list[int]]:
-    """Blocks placed, action and subgoal planning cost so far, after each decision."""
+    """Sequence, action and subgoal planning cost so far, after each decision."""
     if hidden:
         return []
     action = accumulate(
@@ -131,12 +127,12 @@ def curve_json(record: TrialRecord, hidden: bool) -> list[list[int]]:
         for entry in record.decisions
     )
     subgoal = accumulate(entry.decision.subgoal_planning_cost for entry in record.decisions)
-    placed = (entry.placed for entry in record.decisions)
-    return [list(point) for point in zip(placed, action, subgoal, strict=True)]
+    sequences = (entry.sequence for entry in record.decisions)
+    return [list(point) for point in zip(sequences, action, subgoal, strict=True)]
 
 
 def proposal_json(board: Board, proposal: Proposal) -> Json:
-    """A person's word, without what became of it."""
+    """A person's proposal, without its result."""
     return {
         'sequence': proposal.sequence,
         'number': proposal.number,
@@ -149,7 +145,7 @@ def proposal_json(board: Board, proposal: Proposal) -> Json:
 def summary_json(past: Past, hidden: bool) -> Json:
     """A trial that ran, as a line of a table."""
     record = past.scene.record
-    hidden = hidden or hides_costs(record.spec)
+    hidden = hidden or record.spec.strategy.hides_costs
     return {
         'number': past.number,
         'stimulus': record.spec.stimulus,
@@ -170,7 +166,7 @@ def replay_json(past: Past, hidden: bool) -> Json:
     """A trial that ran, step by step."""
     scene = past.scene
     record = scene.record
-    hidden = hidden or hides_costs(record.spec)
+    hidden = hidden or record.spec.strategy.hides_costs
     decisions = [decision_json(entry.decision, hidden) for entry in record.decisions]
     return {
         **summary_json(past, hidden),

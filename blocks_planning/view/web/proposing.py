@@ -7,12 +7,16 @@ from typing import Any, NamedTuple
 from blocks_planning.board.geometry import EMPTY, FILLED, Board, Mask
 from blocks_planning.board.task import Task
 from blocks_planning.errors import ConfigurationError, InvalidInput, shown
-from blocks_planning.subgoals.proposals import Proposal, ProposalKind, target_of
+from blocks_planning.subgoals.proposals import (
+    MOST_PROPOSALS,
+    Proposal,
+    ProposalKind,
+    is_filled,
+)
 from blocks_planning.trials.messages import ProposalMade
 from blocks_planning.view.web.session import Session, turn_of
+from blocks_planning.worlds.observation import MAX_OBSERVATIONS
 
-MOST_IN_A_STATE = 1000
-"""Proposals; nobody thinks of so many."""
 _KEYS = {'trial_id', 'sequence', 'number', 'kind', 'region', 'thinking_s'}
 
 
@@ -63,8 +67,8 @@ def parse(data: object, board: Board) -> Posted:
         raise MalformedProposal(f'thinking_s: expected a number, got {shown(seconds)}')
     try:
         proposal = Proposal(
-            sequence=_whole(data, 'sequence', board.size),
-            number=_whole(data, 'number', MOST_IN_A_STATE - 1),
+            sequence=_whole(data, 'sequence', MAX_OBSERVATIONS),
+            number=_whole(data, 'number', MOST_PROPOSALS - 1),
             kind=ProposalKind(data['kind']),
             region=_region(data['region'], board),
             thinking_s=float(seconds),
@@ -122,6 +126,6 @@ def judge_region(task: Task, built: Mask, region: Mask) -> Refused | None:
         return Refused('empty', 'nothing is drawn')
     if not region & task.silhouette:
         return Refused('outside', 'the region lies outside the silhouette')
-    if target_of(task, built, region) == built:
+    if is_filled(task, built, region):
         return Refused('built', 'the region is built already')
     return None

@@ -16,14 +16,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from aiohttp import web
-
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.extras import extra
 from blocks_planning.view.web.frame import hides_costs
 from blocks_planning.view.web.guards import HEADERS, Address, RateLimit, is_same_origin
 from blocks_planning.view.web.live import FAREWELL_S, Audience, Mailbox
 from blocks_planning.view.web.pictures import replay_json, summary_json
 from blocks_planning.view.web.proposing import Refused
+
+with extra('page'):
+    from aiohttp import web
 
 MOST_CLIENTS = 16
 MOST_BYTES = 16 * 1024

@@ -13,14 +13,15 @@ from typing import NamedTuple
 from blocks_planning.board.geometry import Mask
 from blocks_planning.search.result import SolveResult
 from blocks_planning.subgoals.decision import Query
-from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.proposals import (
     Proposal,
     ProposalKind,
     decisive,
+    out_of_turn,
     proposed_at,
     target_of,
 )
+from blocks_planning.trials.execution import history
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
@@ -32,7 +33,7 @@ from blocks_planning.trials.messages import (
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view.captions import shortlist
-from blocks_planning.view.scene import Scene, scene_after
+from blocks_planning.view.scene import Scene, first_scene, scene_after
 
 MOST_PAST = 500
 """Trials that ran and can be replayed; the oldest go first."""
@@ -109,7 +110,7 @@ def session_after(session: Session, message: Message) -> Session:
     scene = session.scene
     if scene is None or message.trial_id != scene.trial.trial_id:
         if isinstance(message, TrialStarted):
-            return Session(Scene(message), past=_closed(session).past)
+            return Session(first_scene(message), past=_closed(session).past)
         return replace(session, past=_past_after(session.past, message))
     match message:
         case SearchAnswer():
@@ -170,15 +171,14 @@ def _trimmed(scene: Scene) -> Scene:
 
 
 def _answered(session: Session, spec: TrialSpec, message: SearchAnswer) -> Session:
-    if not isinstance(spec.strategy, Human):
+    if not spec.strategy.asks_person:
         return session
     return replace(session, answers={**session.answers, message.query: message.result})
 
 
 def _proposed(session: Session, spec: TrialSpec, proposal: Proposal) -> Session:
     """Taken as the selector takes it: in the order of the numbers."""
-    earlier = proposed_at(session.proposals, proposal.sequence)
-    if not isinstance(spec.strategy, Human) or proposal.number != len(earlier):
+    if not spec.strategy.asks_person or out_of_turn(session.proposals, proposal):
         return session
     return replace(session, proposals=(*session.proposals, proposal))
 
@@ -198,7 +198,7 @@ def turn_of(session: Session) -> Turn | None:
     if (
         scene is None
         or state is None
-        or not isinstance(scene.spec.strategy, Human)
+        or not scene.spec.strategy.asks_person
         or scene.status is not TrialStatus.BUILDING
         or state.status is not TrialStatus.BUILDING
         or _is_executing(scene, state)
@@ -231,6 +231,7 @@ def _is_executing(scene: Scene, state: WorldState) -> bool:
         return False
     if chosen.subgoal is None:
         return True
-    done = state.sequence - chosen.sequence
-    way = chosen.way(scene.task.board)
-    return done < 0 or (done < chosen.subgoal.execute and state.built == way[done])
+    if chosen.sequence > state.sequence:
+        return True
+    seen = history(scene.task.board, state.observations)
+    return chosen.progress(scene.spec, seen).is_open

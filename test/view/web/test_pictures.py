@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 from builders import CHAIR, NEVER_SOLVED, spec
 
-from blocks_planning.trials.messages import ProposalMade, SubgoalChosen, TrialStarted
+from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.messages import ProposalMade, TrialStarted
 from blocks_planning.view.scene import last_scene, scenes_of
 from blocks_planning.view.web import pictures
 from blocks_planning.view.web.frame import Seen, frame_json
@@ -76,7 +77,8 @@ def test_replay_has_every_scene(name: str, request: pytest.FixtureRequest) -> No
     assert len(replay['steps']) == len(scenes)
     assert len(replay['all_blocks']) == trial.record.blocks
     for step, scene in zip(replay['steps'], scenes, strict=True):
-        assert step['blocks'] == len(scene.placements)
+        assert step['sequence'] == len(scene.placements)
+        assert step['standing'] == list(range(len(scene.placements)))
         region = 0 if step['region'] is None else board.parse(step['region'])
         assert region == scene.region
         planned = board.mask(

@@ -10,7 +10,8 @@ import pytest
 from builders import CHAIR, task
 
 from blocks_planning.subgoals.proposals import ProposalKind, target_of
-from blocks_planning.trials.messages import ProposalMade, SubgoalChosen
+from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.messages import ProposalMade
 from blocks_planning.view.web.pictures import rows_of
 from blocks_planning.view.web.proposing import (
     MalformedProposal,
@@ -56,8 +57,8 @@ def test_it_is_read_as_it_was_meant() -> None:
         ({'kind': 'burn'}, "kind: expected build or withdrawn or give_up, got 'burn'"),
         ({'kind': ['build']}, 'kind: expected'),
         ({'trial_id': 7}, 'trial_id: expected a text, got 7'),
-        ({'sequence': -1}, 'sequence: expected a number from 0 to 24, got -1'),
-        ({'sequence': 25}, 'sequence: expected'),
+        ({'sequence': -1}, 'sequence: expected a number from 0 to 1024, got -1'),
+        ({'sequence': 1025}, 'sequence: expected'),
         ({'sequence': True}, 'sequence: expected'),
         ({'number': 1000}, 'number: expected a number from 0 to 999, got 1000'),
         ({'number': 0.0}, 'number: expected'),

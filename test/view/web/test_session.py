@@ -10,14 +10,15 @@ import pytest
 from builders import CHAIR, spec
 
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind
+from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.messages import (
     Message,
     ProposalMade,
     SearchAnswer,
-    SubgoalChosen,
     TrialEnded,
     TrialStarted,
     WorldState,
+    observed,
 )
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view.scene import last_scene
@@ -171,7 +172,17 @@ def test_a_block_that_lies_elsewhere_makes_it_the_persons_turn(by_person: Heard)
     session = after(by_person.messages[: index + 1])
     assert turn_of(session) is None
     states = [m for m in by_person.messages if isinstance(m, WorldState)]
-    elsewhere = replace(states[1], built=states[1].built << 1)
+    trial = by_person.messages[0]
+    assert isinstance(trial, TrialStarted)
+    (placed,) = states[1].placements
+    moved = placed._replace(column=placed.column + 1)
+    seen = states[1].observations[1]._replace(landed=(moved,))
+    elsewhere = observed(
+        trial.trial_id,
+        trial.spec.task.board,
+        (states[1].observations[0], seen),
+        states[1].status,
+    )
     turn = turn_of(after([elsewhere], session))
     assert turn is not None
     assert (turn.sequence, turn.number) == (1, 0)

@@ -1,6 +1,9 @@
-"""The board: states, actions and what became of them."""
+"""The board: states, orders and what became of them."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
 
 from blocks_planning_msgs import msg as ros
 
@@ -8,21 +11,57 @@ from blocks_planning.board.blocks import Placement
 from blocks_planning.board.geometry import Board
 from blocks_planning.ros.wire.conversions.cells import (
     block_from_ros,
+    block_to_ros,
+    blocks_from_ros,
+    blocks_to_ros,
     grid_to_ros,
     mask_on,
     placed_from_ros,
     placed_to_ros,
-    way_from_ros,
 )
-from blocks_planning.ros.wire.conversions.fields import refuse, word
-from blocks_planning.trials.messages import PlaceBlock, PlacementOutcome, WorldState
+from blocks_planning.ros.wire.conversions.fields import (
+    MOST_OBSERVATIONS,
+    MessageError,
+    bounded,
+    refuse,
+    word,
+)
+from blocks_planning.trials.messages import (
+    PlaceBlock,
+    PlacementCode,
+    PlacementOutcome,
+    WorldState,
+)
 from blocks_planning.trials.status import TrialStatus
+from blocks_planning.worlds.observation import (
+    Blocks,
+    Observation,
+    Observations,
+    blocks_after,
+    mask_of,
+    wrong_change,
+)
 
-_STATE_REASONS = {
-    TrialStatus.BUILDING: 'some legal placement is left',
-    TrialStatus.SUCCESS: 'the filled cells are the silhouette',
-    TrialStatus.STUCK: 'no legal placement is left',
+_OF_THE_TRIAL = ('gave_up', 'cancelled')
+_STATE_STATUSES = [status.value for status in TrialStatus if status.value not in _OF_THE_TRIAL]
+STATE_REASONS = {
+    'building': 'some legal placement is left',
+    'success': 'the filled cells are the silhouette',
+    'stuck': 'no legal placement is left',
+    'collapsed': 'the tower fell',
 }
+_PLACEMENT_REASONS = {
+    PlacementCode.PLACED: 'the block rests where it was ordered',
+    PlacementCode.SLIPPED: 'the block landed elsewhere',
+    PlacementCode.LOST: 'no block landed',
+    PlacementCode.COLLAPSED: 'the tower fell',
+    PlacementCode.IMPOSSIBLE: 'the block would not come to rest inside the board',
+    PlacementCode.FAILED: 'no block can be placed any more',
+    PlacementCode.TRY_AGAIN: 'the order cannot be carried out now',
+    PlacementCode.IN_PROGRESS: 'the order is being carried out',
+}
+_LANDS = (PlacementCode.PLACED, PlacementCode.SLIPPED)
+_MAY_LAND = (*_LANDS, PlacementCode.COLLAPSED)
 
 
 def state_to_ros(board: Board, message: WorldState) -> ros.WorldState:
@@ -31,30 +70,79 @@ def state_to_ros(board: Board, message: WorldState) -> ros.WorldState:
         trial_id=message.trial_id,
         sequence=message.sequence,
         built=grid_to_ros(board, message.built),
-        placements=[placed_to_ros(placed) for placed in message.placements],
+        placements=blocks_to_ros(message.placements),
+        observations=[observation_to_ros(seen) for seen in message.observations],
         status=message.status.value,
-        reason=_STATE_REASONS[message.status],
+        reason=STATE_REASONS.get(message.status.value, message.status.value),
     )
 
 
 def state_from_ros(board: Board, message: ros.WorldState) -> WorldState:
     """See :class:`WorldState`."""
-    placements, built = way_from_ros(board, 0, message.placements, 'placements')
-    if message.sequence != len(placements):
-        raise refuse('sequence', message.sequence, f'the number of placements, {len(placements)}')
+    observations, blocks = _history_from_ros(board, message.observations)
+    if message.sequence != len(observations) - 1:
+        expected = f'the number of observations less one, {len(observations) - 1}'
+        raise refuse('sequence', message.sequence, expected)
+    if blocks_from_ros(board, message.placements, 'placements') != blocks:
+        raise refuse('placements', 'others', 'the blocks that stand after all observations')
+    status = word(TrialStatus, message.status, 'status', _STATE_STATUSES)
+    built = mask_of(board, blocks)
     if mask_on(board, message.built, 'built') != built:
         raise refuse('built', 'other cells', 'the cells that the placements fill')
-    status = word(TrialStatus, message.status, 'status', [s.value for s in _STATE_REASONS])
-    return WorldState(message.trial_id, message.sequence, built, placements, status)
+    return WorldState(message.trial_id, observations, blocks, built, status)
+
+
+def _history_from_ros(
+    board: Board, messages: Sequence[ros.Observation]
+) -> tuple[Observations, Blocks]:
+    """The observations of a trial, and the blocks that stand after them."""
+    bounded(messages, 'observations', 1, MOST_OBSERVATIONS)
+    blocks: Blocks = ()
+    observations = []
+    for index, message in enumerate(messages):
+        seen = observation_from_ros(board, message, f'observations[{index}]')
+        wrong = wrong_change(blocks, seen)
+        if wrong:
+            raise MessageError(f'observations[{index}].gone: {wrong}')
+        blocks = blocks_after(blocks, seen)
+        observations.append(seen)
+    return tuple(observations), blocks
+
+
+@lru_cache(maxsize=4096)  # every later state has it too
+def observation_to_ros(seen: Observation) -> ros.Observation:
+    """See :class:`Observation`; the message is kept, and must not be changed."""
+    message = ros.Observation(
+        landed=blocks_to_ros(seen.landed),
+        gone=blocks_to_ros(seen.gone),
+    )
+    if seen.ordered is not None:
+        message.has_order = True
+        message.ordered_block = block_to_ros(seen.ordered.block)
+        message.ordered_column = seen.ordered.column
+    return message
+
+
+def observation_from_ros(board: Board, message: ros.Observation, field: str) -> Observation:
+    """See :class:`Observation`."""
+    ordered = None
+    if message.has_order:
+        block = block_from_ros(message.ordered_block, f'{field}.ordered_block')
+        ordered = Placement(block, message.ordered_column)
+    return Observation(
+        ordered,
+        blocks_from_ros(board, message.landed, f'{field}.landed'),
+        blocks_from_ros(board, message.gone, f'{field}.gone'),
+    )
 
 
 def action_to_ros(board: Board, message: PlaceBlock) -> ros.PlaceBlock:
     """See :class:`PlaceBlock`."""
-    (width, height), column = message.placement
+    block, column = message.placement
     return ros.PlaceBlock(
         trial_id=message.trial_id,
         sequence=message.sequence,
-        block=ros.Block(width=width, height=height),
+        block=block_to_ros(block),
         column=column,
     )
 
@@ -67,24 +155,32 @@ def action_from_ros(board: Board, message: ros.PlaceBlock) -> PlaceBlock:
 
 def placement_outcome_to_ros(board: Board, message: PlacementOutcome) -> ros.PlacementOutcome:
     """See :class:`PlacementOutcome`."""
-    kind, placed = ros.PlacementOutcome, message.placed
-    refused = kind.STATUS_FAILED if message.failed else kind.STATUS_IMPOSSIBLE
-    return kind(
+    placed = message.placed
+    return ros.PlacementOutcome(
         trial_id=message.trial_id,
         sequence=message.sequence,
-        status=refused if placed is None else kind.STATUS_PLACED,
-        reason=message.reason or 'the block rests where it fell',
+        code=message.code.value,
+        reason=message.reason or _PLACEMENT_REASONS[message.code],
+        progress=message.progress,
         placed=ros.Placement() if placed is None else placed_to_ros(placed),
     )
 
 
 def placement_outcome_from_ros(board: Board, message: ros.PlacementOutcome) -> PlacementOutcome:
     """See :class:`PlacementOutcome`."""
-    kind = ros.PlacementOutcome
-    statuses = (kind.STATUS_PLACED, kind.STATUS_IMPOSSIBLE, kind.STATUS_FAILED)
-    status = word(str, message.status, 'status', statuses)
-    if status != kind.STATUS_PLACED:
-        failed = status == kind.STATUS_FAILED
-        return PlacementOutcome(message.trial_id, message.sequence, None, message.reason, failed)
-    placed = placed_from_ros(board, message.placed, 'placed')
-    return PlacementOutcome(message.trial_id, message.sequence, placed)
+    if message.code not in list(PlacementCode):
+        codes = f'a code from 1 to {max(PlacementCode).value}'
+        raise refuse('code', message.code, codes)
+    code = PlacementCode(message.code)
+    if not 0 <= message.progress <= 1:
+        raise refuse('progress', message.progress, 'a number from 0 to 1')
+    has_landed = code in _LANDS or (code in _MAY_LAND and message.placed != ros.Placement())
+    usual = message.reason == _PLACEMENT_REASONS[code]
+    return PlacementOutcome(
+        message.trial_id,
+        message.sequence,
+        placed_from_ros(board, message.placed, 'placed') if has_landed else None,
+        '' if usual else message.reason,
+        code,
+        message.progress,
+    )

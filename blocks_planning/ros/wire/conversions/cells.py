@@ -1,8 +1,11 @@
-"""Cells, blocks and placements."""
+"""Cells, blocks and placements.
+
+The messages made here are kept and used again: they must not be changed.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 from blocks_planning_msgs import msg as ros
@@ -10,20 +13,16 @@ from blocks_planning_msgs import msg as ros
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Block, Placed
 from blocks_planning.board.geometry import MAX_SIDE, Board, Mask
-from blocks_planning.ros.wire.conversions.fields import refuse
+from blocks_planning.ros.wire.conversions.fields import bounded, refuse
 
 
+@lru_cache(maxsize=4096)  # the same cells are sent again and again
 def grid_to_ros(board: Board, mask: Mask) -> ros.Grid:
     """A mask as cells, row by row from the ground."""
-    return ros.Grid(width=board.width, height=board.height, cells=_cells_of(board, mask))
-
-
-@lru_cache(maxsize=4096)  # the same regions are spoken of again and again
-def _cells_of(board: Board, mask: Mask) -> bytes:
     cells = bytearray(board.size)
     for column, row in board.cells(mask):
         cells[row * board.width + column] = 1
-    return bytes(cells)
+    return ros.Grid(width=board.width, height=board.height, cells=bytes(cells))
 
 
 def grid_from_ros(grid: ros.Grid, field: str) -> tuple[Board, Mask]:
@@ -57,10 +56,11 @@ def mask_on(board: Board, grid: ros.Grid, field: str) -> Mask:
     return mask
 
 
+@lru_cache(maxsize=1 << 14)
 def placed_to_ros(placed: Placed) -> ros.Placement:
     """A block where it lies."""
     return ros.Placement(
-        block=ros.Block(width=placed.width, height=placed.height),
+        block=block_to_ros(placed.placement.block),
         column=placed.column,
         row=placed.row,
     )
@@ -75,13 +75,32 @@ def block_from_ros(block: ros.Block, field: str) -> Block:
     return Block(block.width, block.height)
 
 
+@lru_cache(maxsize=MAX_SIDE * MAX_SIDE)
+def block_to_ros(block: Block) -> ros.Block:
+    """A block of a library."""
+    return ros.Block(width=block.width, height=block.height)
+
+
 def placed_from_ros(board: Board, message: ros.Placement, field: str) -> Placed:
     """A block that lies on the board; whether it can get there is not looked at."""
-    block = block_from_ros(message.block, f'{field}.block')
-    if message.column + block.width > board.width or message.row + block.height > board.height:
-        place = f'column {message.column}, row {message.row}'
-        raise refuse(field, place, f'a place on the board for a block of {block}')
-    return Placed(*block, message.column, message.row)
+    size, block = (board.width, board.height), message.block
+    placed = _placed(*size, block.width, block.height, message.column, message.row)
+    if placed is not None:
+        return placed
+    kind = block_from_ros(message.block, f'{field}.block')
+    place = f'column {message.column}, row {message.row}'
+    raise refuse(field, place, f'a place on the board for a block of {kind}')
+
+
+@lru_cache(maxsize=1 << 14)  # the same blocks are told again in every state
+def _placed(
+    columns: int, rows: int, width: int, height: int, column: int, row: int
+) -> Placed | None:
+    """A block where it lies; None if that is not on a board of such a size."""
+    is_block = 1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE
+    if is_block and column + width <= columns and row + height <= rows:
+        return Placed(width, height, column, row)
+    return None
 
 
 def way_from_ros(
@@ -98,3 +117,19 @@ def way_from_ros(
         placements.append(placed)
         built |= rules.cells_of(board, placed)
     return tuple(placements), built
+
+
+def blocks_from_ros(
+    board: Board, messages: Sequence[ros.Placement], field: str
+) -> tuple[Placed, ...]:
+    """Blocks that lie on the board, whether or not they can get there."""
+    bounded(messages, field, 0, board.size)
+    return tuple(
+        placed_from_ros(board, message, f'{field}[{index}]')
+        for index, message in enumerate(messages)
+    )
+
+
+def blocks_to_ros(blocks: Iterable[Placed]) -> list[ros.Placement]:
+    """Blocks where they lie."""
+    return [placed_to_ros(placed) for placed in blocks]

@@ -3,40 +3,48 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from blocks_planning_msgs import msg as ros
 
 from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.ros.wire.conversions.cells import (
+    blocks_to_ros,
     grid_to_ros,
     mask_on,
-    placed_to_ros,
     way_from_ros,
 )
-from blocks_planning.ros.wire.conversions.fields import cost, refuse, word
+from blocks_planning.ros.wire.conversions.fields import (
+    MOST_CANDIDATES,
+    MOST_OBSERVATIONS,
+    MOST_REGIONS,
+    bounded,
+    cost,
+    index,
+    refuse,
+    word,
+)
+from blocks_planning.ros.wire.conversions.proposals import proposal_to_ros, read_proposal
 from blocks_planning.ros.wire.conversions.search import SOLVE_STATUSES
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.subgoals.decision import Candidate, Decision, Subgoal
-from blocks_planning.subgoals.proposals import Proposal, ProposalKind
-from blocks_planning.trials.messages import ProposalMade, SubgoalChosen
-from blocks_planning.trials.record import DecisionRecord
+from blocks_planning.subgoals.proposals import MOST_PROPOSALS
+from blocks_planning.subgoals.regions import Label, Region
+from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.messages import ProposalMade
+from blocks_planning.trials.record import DecisionRecord, regions_of
+from blocks_planning.trials.version2 import MAX_LABEL_NUMBERS
 
-MOST_PROPOSALS = 1000
-"""In one state; nobody thinks of so many, and memory stays bounded."""
+_MAX_KIND = 64
+_STATUS = ros.Subgoal
 
 
 def subgoal_to_ros(board: Board, message: SubgoalChosen) -> ros.Subgoal:
     """See :class:`SubgoalChosen`."""
-    kind = ros.Subgoal
+    status, reason = _STATUS.STATUS_CHOSEN, 'the strategy chose this candidate'
     if message.subgoal is None:
-        status, reason = kind.STATUS_NONE_SOLVABLE, 'no candidate could be solved'
-        if message.proposals:
-            reason = 'the person gave up'
-    else:
-        status, reason = kind.STATUS_CHOSEN, 'the candidate of highest value'
-        if message.proposals:
-            reason = 'the person proposed it, and it could be solved'
-    return kind(
+        status, reason = _STATUS.STATUS_NONE_SOLVABLE, 'the strategy chose no candidate'
+    return ros.Subgoal(
         trial_id=message.trial_id,
         sequence=message.sequence,
         status=status,
@@ -51,66 +59,37 @@ def subgoal_to_ros(board: Board, message: SubgoalChosen) -> ros.Subgoal:
 
 def subgoal_from_ros(board: Board, message: ros.Subgoal) -> SubgoalChosen:
     """See :class:`SubgoalChosen`."""
-    decisions = tuple(
-        _decision_from_ros(board, entry, f'decisions[{index}]')
-        for index, entry in enumerate(message.decisions)
+    bounded(message.decisions, 'decisions', 1, MOST_OBSERVATIONS)
+    bounded(message.proposals, 'proposals', 0, MOST_PROPOSALS * len(message.decisions))
+    chosen = SubgoalChosen(
+        message.trial_id,
+        message.sequence,
+        tuple(
+            _decision_from_ros(board, entry, f'decisions[{number}]')
+            for number, entry in enumerate(message.decisions)
+        ),
+        tuple(
+            read_proposal(board, proposal, f'proposals[{number}].')
+            for number, proposal in enumerate(message.proposals)
+        ),
     )
-    if not 1 <= len(decisions) <= board.size + 1:
-        raise refuse('decisions', len(decisions), f'1 to {board.size + 1} decisions')
-    kind = ros.Subgoal
-    proposals = tuple(
-        _proposal_from_ros(board, proposal, f'proposals[{index}].')
-        for index, proposal in enumerate(message.proposals)
-    )
-    chosen = SubgoalChosen(message.trial_id, message.sequence, decisions, proposals)
-    status = kind.STATUS_NONE_SOLVABLE if chosen.subgoal is None else kind.STATUS_CHOSEN
+    is_none = chosen.subgoal is None
+    status = _STATUS.STATUS_NONE_SOLVABLE if is_none else _STATUS.STATUS_CHOSEN
     word(str, message.status, 'status', (status,))
     return chosen
 
 
-def proposal_to_ros(board: Board, message: ProposalMade) -> ros.Proposal:
-    """See :class:`ProposalMade`."""
-    proposal = message.proposal
-    return ros.Proposal(
-        trial_id=message.trial_id,
-        sequence=proposal.sequence,
-        number=proposal.number,
-        kind=proposal.kind.value,
-        region=grid_to_ros(board, proposal.region),
-        thinking_s=proposal.thinking_s,
-    )
-
-
-def proposal_from_ros(board: Board, message: ros.Proposal) -> ProposalMade:
-    """See :class:`ProposalMade`."""
-    return ProposalMade(message.trial_id, _proposal_from_ros(board, message, ''))
-
-
-def _proposal_from_ros(board: Board, message: ros.Proposal, prefix: str) -> Proposal:
-    if message.sequence > board.size:
-        raise refuse(f'{prefix}sequence', message.sequence, f'0 to {board.size} placements')
-    if message.number >= MOST_PROPOSALS:
-        raise refuse(f'{prefix}number', message.number, f'0 to {MOST_PROPOSALS - 1}')
-    if not 0 <= message.thinking_s < math.inf:
-        raise refuse(f'{prefix}thinking_s', message.thinking_s, 'a finite number of 0 or more')
-    kinds = [kind.value for kind in ProposalKind]
-    return Proposal(
-        sequence=message.sequence,
-        number=message.number,
-        kind=word(ProposalKind, message.kind, f'{prefix}kind', kinds),
-        region=mask_on(board, message.region, f'{prefix}region'),
-        thinking_s=message.thinking_s,
-    )
-
-
 def _decision_to_ros(board: Board, entry: DecisionRecord) -> ros.Decision:
     decision = entry.decision
+    regions = {region: number for number, region in enumerate(regions_of(decision))}
     return ros.Decision(
-        placed=entry.placed,
+        sequence=entry.sequence,
         built=grid_to_ros(board, decision.built),
-        candidates=[_candidate_to_ros(candidate) for candidate in decision.candidates],
+        regions=[region_to_ros(board, region) for region in regions],
+        candidates=[_candidate_to_ros(candidate, regions) for candidate in decision.candidates],
+        sequences=decision.sequences,
         chosen=-1 if decision.chosen is None else decision.chosen,
-        subgoals=[_planned_to_ros(board, subgoal) for subgoal in decision.subgoals],
+        subgoals=[_planned_to_ros(board, subgoal, regions) for subgoal in decision.subgoals],
         subgoal_planning_cost=decision.subgoal_planning_cost,
         executed=entry.executed,
     )
@@ -118,19 +97,25 @@ def _decision_to_ros(board: Board, entry: DecisionRecord) -> ros.Decision:
 
 def _decision_from_ros(board: Board, message: ros.Decision, field: str) -> DecisionRecord:
     built = mask_on(board, message.built, f'{field}.built')
+    bounded(message.regions, f'{field}.regions', 0, MOST_REGIONS)
+    bounded(message.candidates, f'{field}.candidates', 0, MOST_CANDIDATES)
+    bounded(message.subgoals, f'{field}.subgoals', 0, board.size)
+    regions = [
+        region_from_ros(board, region, f'{field}.regions[{number}]')
+        for number, region in enumerate(message.regions)
+    ]
     candidates = tuple(
-        _candidate_from_ros(board, candidate, f'{field}.candidates[{index}]')
-        for index, candidate in enumerate(message.candidates)
+        _candidate_from_ros(candidate, regions, f'{field}.candidates[{number}]')
+        for number, candidate in enumerate(message.candidates)
     )
-    subgoals = []
-    state = built
-    for index, planned in enumerate(message.subgoals):
-        subgoals.append(_planned_from_ros(board, state, planned, f'{field}.subgoals[{index}]'))
-        state = subgoals[-1].region
+    subgoals: list[Subgoal] = []
+    for number, planned in enumerate(message.subgoals):
+        state = subgoals[-1].target if subgoals else built
+        place = f'{field}.subgoals[{number}]'
+        subgoals.append(_planned_from_ros(board, state, planned, regions, place))
     if not -1 <= message.chosen < len(candidates) or (message.chosen < 0) != (not subgoals):
-        raise refuse(
-            f'{field}.chosen', message.chosen, 'a candidate, and subgoals if there is one'
-        )
+        expected = 'a candidate, and subgoals if there is one'
+        raise refuse(f'{field}.chosen', message.chosen, expected)
     if message.executed > len(subgoals) or (subgoals and message.executed == 0):
         raise refuse(f'{field}.executed', message.executed, f'1 to {len(subgoals)} subgoals')
     decision = Decision(
@@ -141,42 +126,72 @@ def _decision_from_ros(board: Board, message: ros.Decision, field: str) -> Decis
         subgoal_planning_cost=cost(
             message.subgoal_planning_cost, f'{field}.subgoal_planning_cost'
         ),
+        sequences=cost(message.sequences, f'{field}.sequences'),
     )
-    return DecisionRecord(message.placed, decision, message.executed)
+    return DecisionRecord(message.sequence, decision, message.executed)
 
 
-def _candidate_to_ros(candidate: Candidate) -> ros.Candidate:
+def region_to_ros(board: Board, region: Region) -> ros.Region:
+    """See :class:`Region`."""
+    return ros.Region(
+        label_kind=region.label.kind,
+        label_numbers=region.label.numbers,
+        cells=grid_to_ros(board, region.cells),
+    )
+
+
+def region_from_ros(board: Board, message: ros.Region, field: str) -> Region:
+    """See :class:`Region`."""
+    kind = message.label_kind
+    if not 1 <= len(kind) <= _MAX_KIND or not kind.isprintable():
+        raise refuse(f'{field}.label_kind', kind, f'a word of up to {_MAX_KIND} characters')
+    bounded(message.label_numbers, f'{field}.label_numbers', 0, MAX_LABEL_NUMBERS)
+    label = Label(kind, tuple(map(int, message.label_numbers)))
+    return Region(label, mask_on(board, message.cells, f'{field}.cells'))
+
+
+def _candidate_to_ros(candidate: Candidate, regions: dict[Region, int]) -> ros.Candidate:
+    value, probability = candidate.value, candidate.probability
     return ros.Candidate(
-        rows=candidate.heights,
+        regions=[regions[region] for region in candidate.regions],
         cells=candidate.cells,
         planning_cost=candidate.planning_cost,
-        has_value=candidate.value is not None,
-        value=0.0 if candidate.value is None else candidate.value,
+        has_value=value is not None,
+        value=value or 0.0,
+        has_probability=probability is not None,
+        probability=probability or 0.0,
         status=candidate.status.value,
     )
 
 
-def _candidate_from_ros(board: Board, message: ros.Candidate, field: str) -> Candidate:
-    heights = tuple(map(int, message.rows))
-    if list(heights) != sorted(set(heights)) or max(heights, default=0) > board.height:
-        raise refuse(f'{field}.rows', list(heights), f'rising numbers up to {board.height}')
+def _candidate_from_ros(
+    message: ros.Candidate, regions: Sequence[Region], field: str
+) -> Candidate:
+    bounded(message.regions, f'{field}.regions', 1, MOST_REGIONS)
     if not math.isfinite(message.value):
         raise refuse(f'{field}.value', message.value, 'a finite number')
+    if not 0 <= message.probability <= 1:
+        raise refuse(f'{field}.probability', message.probability, 'a number from 0 to 1')
     return Candidate(
-        heights=heights,
+        regions=tuple(
+            index(int(number), regions, f'{field}.regions') for number in message.regions
+        ),
         cells=message.cells,
         planning_cost=cost(message.planning_cost, f'{field}.planning_cost'),
         value=message.value if message.has_value else None,
         status=word(SolveStatus, message.status, f'{field}.status', SOLVE_STATUSES),
+        probability=message.probability if message.has_probability else None,
     )
 
 
-def _planned_to_ros(board: Board, subgoal: Subgoal) -> ros.PlannedSubgoal:
+def _planned_to_ros(
+    board: Board, subgoal: Subgoal, regions: dict[Region, int]
+) -> ros.PlannedSubgoal:
     return ros.PlannedSubgoal(
-        rows=subgoal.height or 0,
-        region=grid_to_ros(board, subgoal.region),
+        region=regions[subgoal.region],
+        target=grid_to_ros(board, subgoal.target),
         execute=subgoal.execute,
-        placements=[placed_to_ros(placed) for placed in subgoal.placements],
+        placements=blocks_to_ros(subgoal.placements),
         planning_cost=subgoal.planning_cost,
         solution_cost=subgoal.solution_cost,
         attempts=subgoal.attempts,
@@ -184,19 +199,21 @@ def _planned_to_ros(board: Board, subgoal: Subgoal) -> ros.PlannedSubgoal:
 
 
 def _planned_from_ros(
-    board: Board, built: Mask, message: ros.PlannedSubgoal, field: str
+    board: Board,
+    built: Mask,
+    message: ros.PlannedSubgoal,
+    regions: Sequence[Region],
+    field: str,
 ) -> Subgoal:
-    region = mask_on(board, message.region, f'{field}.region')
+    target = mask_on(board, message.target, f'{field}.target')
     placements, reached = way_from_ros(board, built, message.placements, f'{field}.placements')
-    if reached != region or built == region:
-        raise refuse(f'{field}.placements', len(placements), 'placements that fill the region')
+    if reached != target or built == target:
+        raise refuse(f'{field}.placements', len(placements), 'placements that fill the target')
     if not 1 <= message.execute <= len(placements):
         raise refuse(f'{field}.execute', message.execute, f'1 to {len(placements)} placements')
-    if message.rows > board.height:
-        raise refuse(f'{field}.rows', message.rows, f'0 to {board.height}')
     return Subgoal(
-        height=message.rows or None,
-        region=region,
+        region=index(message.region, regions, f'{field}.region'),
+        target=target,
         execute=message.execute,
         placements=placements,
         planning_cost=cost(message.planning_cost, f'{field}.planning_cost'),

@@ -1,19 +1,28 @@
-"""Refusing what a message can't say."""
+"""Refusing what a message can't say, and bounding what it may contain."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TypeVar
 
 from blocks_planning.errors import InvalidInput
 
 T = TypeVar('T')
 MAX_COST = 1 << 48
-"""No search counts so many states in a week, and no sum over a trial outgrows 64 bits."""
+"""Largest cost of one solve [states]: no search counts that far in a week, and no sum over a trial
+outgrows 64 bits."""
+MOST_OBSERVATIONS = 4096
+"""Of a trial. A tower takes 256 placements at most; the rest are orders that were lost."""
+MOST_QUERIES = 1 << 14
+"""In a request."""
+MOST_REGIONS = 1 << 12
+"""In a decision."""
+MOST_CANDIDATES = 1 << 15
+"""In a decision: every sequence of rows of the largest board."""
 
 
 class MessageError(InvalidInput):
-    """A message that says what can't be."""
+    """A message whose content is impossible."""
 
 
 def refuse(field: str, value: object, expected: str) -> MessageError:
@@ -36,3 +45,17 @@ def cost(value: int, field: str) -> int:
     if value > MAX_COST:
         raise refuse(field, value, f'up to {MAX_COST} states')
     return value
+
+
+def bounded(items: Sequence[T], field: str, least: int, most: int) -> Sequence[T]:
+    """A list of a message that must have ``least`` to ``most`` entries."""
+    if not least <= len(items) <= most:
+        raise refuse(field, f'{len(items)} entries', f'{least} to {most} entries')
+    return items
+
+
+def index(value: int, items: Sequence[T], field: str) -> T:
+    """The entry of a list that a message names by its index."""
+    if not 0 <= value < len(items):
+        raise refuse(field, value, f'an index below {len(items)}')
+    return items[value]

@@ -2,54 +2,45 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from blocks_planning_msgs import msg as ros
 
+from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.errors import InvalidInput
 from blocks_planning.ros.wire.conversions.cells import (
     block_from_ros,
+    block_to_ros,
+    blocks_from_ros,
+    blocks_to_ros,
     grid_from_ros,
     grid_to_ros,
-    placed_to_ros,
 )
-from blocks_planning.ros.wire.conversions.fields import MessageError, refuse, word
-from blocks_planning.search.searches import SEARCHES, make_search
-from blocks_planning.settings import setting_names, settings_of
-from blocks_planning.subgoals.registry import STRATEGIES, make_strategy
+from blocks_planning.ros.wire.conversions.fields import MessageError, bounded, refuse, word
+from blocks_planning.ros.wire.conversions.settings import members_from_ros, planner_to_ros
 from blocks_planning.trials.messages import TrialEnded, TrialStarted
-from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 
-_PLANNER_FIELDS = {'lambda': 'lambda_weight'}  # settings whose field has another name
 MAX_TRIAL_ID = 200
 MAX_STIMULUS = 4096
 """No path is longer [characters]."""
-_ALL_SETTINGS = (
-    'lambda',
-    'commit',
-    'participant',
-    'costs',
-    'depth',
-    'iterations',
-    'divisor',
-    'execute',
-)
+MOST_BLOCKS = 256
+"""Kinds of blocks in a library."""
+MOST_REASON = 300
+"""Of an outcome [characters]; it may be what another node says."""
 
 
 def spec_to_ros(trial_id: str, spec: TrialSpec) -> ros.TrialSpec:
     """A trial, as it is announced or asked for."""
-    planner = ros.PlannerConfig(
-        strategy=spec.strategy.name, search=spec.search.name, budget=spec.budget
-    )
-    for setting, value in (settings_of(spec.strategy) | settings_of(spec.search)).items():
-        setattr(planner, _PLANNER_FIELDS.get(setting, setting), value)
     return ros.TrialSpec(
         trial_id=trial_id,
         stimulus=spec.stimulus,
         silhouette=grid_to_ros(spec.task.board, spec.task.silhouette),
-        library=[ros.Block(width=b.width, height=b.height) for b in spec.task.library],
-        planner=planner,
+        library=[block_to_ros(block) for block in spec.task.library],
+        built=blocks_to_ros(spec.built),
+        planner=planner_to_ros(spec),
         seed=spec.seed,
     )
 
@@ -57,40 +48,33 @@ def spec_to_ros(trial_id: str, spec: TrialSpec) -> ros.TrialSpec:
 def spec_from_ros(message: ros.TrialSpec) -> TrialSpec:
     """The trial of an announcement or a goal."""
     board, silhouette = grid_from_ros(message.silhouette, 'silhouette')
+    bounded(message.library, 'library', 1, MOST_BLOCKS)
     library = tuple(
         block_from_ros(block, f'library[{index}]') for index, block in enumerate(message.library)
     )
     if len(message.stimulus) > MAX_STIMULUS:
         raise refuse('stimulus', message.stimulus, f'a name of up to {MAX_STIMULUS} characters')
-    config = message.planner
-    strategy = word(str, config.strategy, 'planner.strategy', STRATEGIES)
-    search = word(str, config.search, 'planner.search', SEARCHES)
-    known = [*setting_names(STRATEGIES[strategy]), *setting_names(SEARCHES[search])]
-    values = {name: getattr(config, _PLANNER_FIELDS.get(name, name)) for name in _ALL_SETTINGS}
-    for name, value in values.items():
-        if name not in known and value:
-            raise refuse(f'planner.{name}', value, f'nothing with {strategy} and {search}')
+    built = blocks_from_ros(board, message.built, 'built')
+    members: dict[str, Any] = members_from_ros(message.planner)
     try:
         return TrialSpec(
             stimulus=message.stimulus,
             task=Task(board, silhouette, library),
-            strategy=make_strategy(
-                strategy, {n: values[n] for n in setting_names(STRATEGIES[strategy])}
-            ),
-            search=make_search(search, {n: values[n] for n in setting_names(SEARCHES[search])}),
             seed=message.seed,
-            budget=config.budget,
+            budget=message.planner.budget,
+            built=built,
+            **members,
         )
     except InvalidInput as error:
         raise MessageError(f'trial: {error}') from None
 
 
-def started_to_ros(message: TrialStarted) -> ros.TrialSpec:
-    """See :class:`TrialStarted`."""
+def started_to_ros(board: Board | None, message: TrialStarted) -> ros.TrialSpec:
+    """See :class:`TrialStarted`, which has a board of its own."""
     return spec_to_ros(message.trial_id, message.spec)
 
 
-def started_from_ros(message: ros.TrialSpec) -> TrialStarted:
+def started_from_ros(board: Board | None, message: ros.TrialSpec) -> TrialStarted:
     """See :class:`TrialStarted`."""
     if not 1 <= len(message.trial_id) <= MAX_TRIAL_ID or not message.trial_id.isprintable():
         raise refuse('trial_id', message.trial_id, f'a name of up to {MAX_TRIAL_ID} characters')
@@ -98,29 +82,57 @@ def started_from_ros(message: ros.TrialSpec) -> TrialStarted:
 
 
 _OUTCOME_REASONS = {
-    TrialStatus.SUCCESS: 'the filled cells are the silhouette',
-    TrialStatus.STUCK: 'no legal placement is left',
-    TrialStatus.GAVE_UP: 'no subgoal could be solved',
-    TrialStatus.CANCELLED: 'the trial was cancelled',
+    'success': 'the filled cells are the silhouette',
+    'stuck': 'no legal placement is left',
+    'gave_up': 'no subgoal could be solved',
+    'cancelled': 'the trial was cancelled',
+    'collapsed': 'the tower fell',
 }
+_OUTCOME_STATUSES = [s.value for s in TrialStatus if s is not TrialStatus.BUILDING]
 
 
-def outcome_to_ros(trial_id: str, record: TrialRecord, reason: str = '') -> ros.TrialOutcome:
-    """How a trial ended, from its record; ``reason`` in the place of the usual one."""
-    return ros.TrialOutcome(
-        trial_id=trial_id,
-        status=record.status.value,
-        reason=reason or _OUTCOME_REASONS[record.status],
-        blocks=record.blocks,
-        subgoals=record.subgoals,
-        action_planning_cost=record.action_planning_cost,
-        subgoal_planning_cost=record.subgoal_planning_cost,
-        solution_cost=record.solution_cost,
-        placements=[placed_to_ros(placed) for placed in record.placements],
+def code_of(status: TrialStatus, reason: str) -> int:
+    """The numeric code of an end; a trial that was cancelled for a reason has failed."""
+    if status is TrialStatus.CANCELLED and reason:
+        return int(ros.TrialOutcome.CODE_FAILED)
+    return int(getattr(ros.TrialOutcome, f'CODE_{status.name}'))
+
+
+def ended_to_ros(board: Board | None, message: TrialEnded) -> ros.TrialOutcome:
+    """See :class:`TrialEnded`; counts, costs and measures are those of its record."""
+    record = message.record
+    usual = _OUTCOME_REASONS.get(message.status.value, message.status.value)
+    outcome = ros.TrialOutcome(
+        trial_id=message.trial_id,
+        status=message.status.value,
+        code=code_of(message.status, message.reason),
+        reason=message.reason[:MOST_REASON] or usual,
+        sequence=-1,
     )
+    if record is not None:
+        outcome.sequence = len(record.observations) - 1
+        outcome.placements = blocks_to_ros(record.placements)
+        for name, value in record.summary().items():
+            setattr(outcome, name, value)
+    return outcome
 
 
-def ended_from_ros(message: ros.TrialOutcome) -> TrialEnded:
-    """See :class:`TrialEnded`."""
-    statuses = [status.value for status in _OUTCOME_REASONS]
-    return TrialEnded(message.trial_id, word(TrialStatus, message.status, 'status', statuses))
+def ended_from_ros(board: Board | None, message: ros.TrialOutcome) -> TrialEnded:
+    """See :class:`TrialEnded`; only whoever wrote the record has it."""
+    status = word(TrialStatus, message.status, 'status', _OUTCOME_STATUSES)
+    has_failed = message.code == ros.TrialOutcome.CODE_FAILED
+    reason = message.reason[:MOST_REASON] if has_failed else ''
+    if message.code != code_of(status, reason):
+        raise refuse('code', message.code, f'{code_of(status, reason)} for status {status.value}')
+    return TrialEnded(message.trial_id, status, reason)
+
+
+def refusal(reason: str) -> ros.TrialOutcome:
+    """The outcome of a goal that could not be begun."""
+    kind = ros.TrialOutcome
+    return kind(
+        status=kind.STATUS_REFUSED,
+        code=kind.CODE_REFUSED,
+        reason=reason[:MOST_REASON],
+        sequence=-1,
+    )

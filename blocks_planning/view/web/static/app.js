@@ -57,14 +57,14 @@ function showView(view) {
   say(byId('planner'), `${planner}; search ${trial.search}; seed ${trial.seed}`);
   const status = byId('status');
   status.hidden = false;
-  const rows = step.region !== null && step.height !== null ? ` up to row ${step.height}` : '';
-  say(status, `${step.word}${rows} · ${counted(step.blocks, 'block')}`);
+  const region = step.label === '' ? '' : ` ${step.label}`;
+  say(status, `${step.word}${region} · ${counted(step.standing.length, 'block')}`);
   status.dataset.outcome = step.status === 'success' ? 'success' : step.status === 'building' ? 'none' : 'failed';
   board.show(view);
   hideCosts(trial.costs_hidden);
   if (!trial.costs_hidden) {
     costs.show(step, view.curve);
-    showDecision({ decision: view.decision, lambda: trial.lambda });
+    showDecision({ decision: view.decision });
   }
 }
 

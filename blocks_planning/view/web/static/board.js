@@ -19,8 +19,8 @@ export class Board {
     if (this.trial === null || JSON.stringify(this.trial) !== JSON.stringify(trial)) {
       this.#begin(trial);
     }
-    this.#showBlocks(view.all_blocks.slice(0, step.blocks));
-    this.showRegion([trial.id, step.region, step.planned, step.height, step.colour]);
+    this.#showBlocks(step.standing.map((index) => view.all_blocks[index]));
+    this.showRegion([trial.id, step.region, step.planned, step.top, step.colour]);
     this.#describe(view);
   }
 
@@ -88,8 +88,8 @@ export class Board {
       svg('text', { x: column + width / 2, y: y + height / 2, fill: ink }, String(subgoal + 1)));
   }
 
-  #drawRegion([, region, planned, height, colour]) {
-    this.labels.forEach((label, index) => label.classList.toggle('current', index + 1 === height));
+  #drawRegion([, region, planned, top, colour]) {
+    this.labels.forEach((label, index) => label.classList.toggle('current', index + 1 === top));
     this.svg.style.setProperty('--hatch', colour);
     if (region === null) {
       this.layers.region.replaceChildren();
@@ -107,12 +107,12 @@ export class Board {
     );
   }
 
-  /** For who can't see the picture. */
+  /** The picture in words. */
   #describe({ trial, step }) {
     const built = this.built.size;
-    const rows = step.height === null ? '' : `; the subgoal is everything up to row ${step.height}`;
+    const subgoal = step.label === '' ? '' : `; the subgoal is ${step.label}`;
     say(byId('board-text'), `The tower ${trial.stimulus} on a board of ${trial.width} by `
-      + `${trial.height} cells: ${built} of ${this.target.size} cells are built${rows}.`);
+      + `${trial.height} cells: ${built} of ${this.target.size} cells are built${subgoal}.`);
   }
 }
 

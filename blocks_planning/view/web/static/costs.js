@@ -12,7 +12,7 @@ export class Costs {
     new ResizeObserver(() => this.shown && this.show(...this.shown)).observe(this.place);
   }
 
-  /** `curve`: [blocks placed, action, subgoal] after each decision; `blocks` are placed now. */
+  /** `curve`: [sequence, action, subgoal] after each decision; `step.sequence` is the latest. */
   show(step, curve) {
     this.shown = [step, curve];
     for (const name of ['action', 'subgoal']) {
@@ -24,7 +24,7 @@ export class Costs {
         place.replaceChildren(text, ' ', html('small', {}, cost === 1 ? 'state' : 'states'));
       }
     }
-    this.draw([Math.round(this.place.clientWidth), step.blocks, curve]);
+    this.draw([Math.round(this.place.clientWidth), step.sequence, curve]);
   }
 
   #draw([width, blocks, curve]) {
@@ -45,7 +45,7 @@ export class Costs {
     for (let placed = 0; placed <= last; placed += every) {
       ticks.push(svg('text', { x: x(placed), y: HEIGHT - ROOM.bottom + 15, 'text-anchor': 'middle' }, String(placed)));
     }
-    ticks.push(svg('text', { x: width - ROOM.right, y: HEIGHT - 5, 'text-anchor': 'end' }, 'blocks placed'));
+    ticks.push(svg('text', { x: width - ROOM.right, y: HEIGHT - 5, 'text-anchor': 'end' }, 'orders'));
     const lines = ['action', 'subgoal'].flatMap((name, index) => {
       const points = curve.map((point) => [x(point[0]), y(point[index + 1])]);
       if (points.length === 0) return [];
@@ -57,7 +57,7 @@ export class Costs {
     });
     const drawing = this.place.firstElementChild ?? svg('svg', { role: 'img' });
     drawing.setAttribute('viewBox', `0 0 ${width} ${HEIGHT}`);
-    drawing.setAttribute('aria-label', 'Planning cost in states evaluated, on a logarithmic scale, over the blocks placed');
+    drawing.setAttribute('aria-label', 'Planning cost in states evaluated, on a logarithmic scale, over the orders');
     drawing.replaceChildren(...ticks, ...lines);
     if (!drawing.isConnected) this.place.append(drawing);
   }

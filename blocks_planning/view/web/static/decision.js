@@ -5,7 +5,7 @@ import { byId, counted, html, say, svg, whenNew, whole } from './dom.js';
 const WIDTH = 200;
 const HEIGHT = 18;
 
-/** `shown`: {decision, lambda}; the decision is null before the first. */
+/** `shown`: {decision}; the decision is null before the first. */
 export const showDecision = whenNew((shown) => {
   const { decision } = shown;
   const place = byId('candidates');
@@ -16,20 +16,20 @@ export const showDecision = whenNew((shown) => {
     return;
   }
   const { candidates, total } = decision;
-  place.replaceChildren(table(candidates, shown.lambda), ...legend(candidates));
+  place.replaceChildren(table(candidates), ...legend(candidates));
   const more = total > candidates.length ? `, the best ${candidates.length} are shown` : '';
   const none = candidates.some((one) => one.chosen) ? '' : ' None could be built: the planner gives up.';
   say(note, `${counted(total, 'candidate')}${more}; weighing cost ${counted(decision.cost, 'state')}.${none}`);
 });
 
-function table(candidates, lambda) {
+function table(candidates) {
   const weighed = candidates.some((one) => one.value !== null);
   const most = Math.max(1, ...candidates.map((one) => one.cells));
   const lowest = Math.min(0, ...candidates.map((one) => one.value ?? 0));
   const least = Math.max(lowest, -most / 2); // what lies lower is cut off
   const dearest = Math.max(10, ...candidates.map((one) => one.cost));
   const head = html('tr', {},
-    html('th', { scope: 'col' }, 'rows'),
+    html('th', { scope: 'col' }, 'region'),
     html('th', { scope: 'col', class: 'number', title: 'r: cells that it adds' }, 'cells'),
     html('th', { scope: 'col', class: 'number wide', title: 'c: states evaluated' }, 'cost'),
     weighed ? html('th', { scope: 'col', class: 'number', title: 'V = r − λc' }, 'value')
@@ -43,12 +43,11 @@ function table(candidates, lambda) {
     weighed ? html('td', { class: 'number' }, one.value === null ? '–' : worth(one.value))
       : html('td', {}, one.status),
     html('td', { class: 'bar' },
-      weighed ? tradeOff(one, lambda ?? 0, most, least) : costBar(one, dearest))));
+      weighed ? tradeOff(one, most, least) : costBar(one, dearest))));
   return html('table', {}, html('thead', {}, head), html('tbody', {}, ...rows));
 }
 
-function label({ rows, chosen }) {
-  const text = rows.length === 0 ? 'drawn' : rows.length === 1 ? `up to ${rows[0]}` : rows.join(' · ');
+function label({ label: text, chosen }) {
   return `${chosen ? '▶ ' : ''}${text}`;
 }
 
@@ -56,7 +55,7 @@ export function worth(value) {
   return Math.abs(value) < 1000 ? value.toFixed(2) : whole(Math.round(value));
 }
 
-function tradeOff(one, lambda, most, least) {
+function tradeOff(one, most, least) {
   const x = (value) => ((Math.max(least, value) - least) / (most - least)) * (WIDTH - 4) + 2;
   const bar = (name, from, to, inset) => svg('rect', {
     class: name, x: Math.min(x(from), x(to)), y: inset, width: Math.abs(x(to) - x(from)),
@@ -70,7 +69,7 @@ function tradeOff(one, lambda, most, least) {
     ];
   const text = one.value === null
     ? one.status
-    : `value ${worth(one.value)}: ${one.cells} cells, less ${worth(lambda * one.cost)}`;
+    : `value ${worth(one.value)}: ${one.cells} cells, less ${worth(one.cells - one.value)}`;
   return chart(text, ...drawn,
     svg('path', { class: 'bar-zero', d: `M${x(0)} 0V${HEIGHT}` }));
 }

@@ -66,7 +66,7 @@ export class Replay {
     scrubber.value = this.at;
     const text = `step ${this.at} of ${trial.steps.length - 1}`;
     say(byId('step-text'), text);
-    scrubber.setAttribute('aria-valuetext', `${text}, ${step.blocks} blocks`);
+    scrubber.setAttribute('aria-valuetext', `${text}, ${step.standing.length} blocks`);
     this.onStep({
       ...trial,
       step,

@@ -1,0 +1,40 @@
+"""Optional dependencies: an import that fails names the extra of the package that would help.
+
+The planning core and the nodes need few packages. What only experiments, figures or the page
+need is an extra of ``setup.py``, and is imported inside :func:`extra`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from blocks_planning.errors import ConfigurationError
+
+EXTRAS = ('experiments', 'figures', 'page')
+"""As in ``extras_require`` of ``setup.py``; the extra ``all`` is these three."""
+
+
+class MissingExtra(ConfigurationError):
+    """A package that an optional part of this one needs is not installed."""
+
+
+@contextmanager
+def extra(name: str) -> Iterator[None]:
+    """Import packages of one extra in the body of a ``with`` statement.
+
+    Args:
+        name: one of :data:`EXTRAS`.
+
+    Raises:
+        MissingExtra: if a module is not found; the message names it, the extra, and the command
+            that installs the extra.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        module = str(error.name).partition('.')[0]
+        raise MissingExtra(
+            f'the module {module} is not installed; it comes with the extra {name!r} of this '
+            f"package: pip install 'blocks_planning[{name}]' (in a checkout: make setup)"
+        ) from error

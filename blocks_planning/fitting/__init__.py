@@ -1,0 +1,1 @@
+"""Models of the choice of a region: likelihoods, fits, comparison, recovery (docs/fitting.md)."""

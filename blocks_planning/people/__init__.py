@@ -1,0 +1,1 @@
+"""What people built and marked, and measures of it that apply to planners too."""

@@ -1,0 +1,153 @@
+"""A trial of a bag, and what in it does not follow from the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from blocks_planning.trials import scribe, verify
+from blocks_planning.trials.execution import spans_of
+from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.status import TrialStatus
+from blocks_planning.worlds.observation import Blocks
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What was published at the end of a trial.
+
+    Attributes:
+        status: how it ended.
+        reason: why it could not go on; '' if it came to an end of its own or a user cancelled it.
+        sequence: of the latest observation; -1 if the board was never observed.
+        placements: the blocks that stand.
+        summary: counts, costs and measures by name; those that its version of the message has.
+    """
+
+    status: TrialStatus
+    reason: str
+    sequence: int
+    placements: Blocks
+    summary: Mapping[str, float]
+
+    @property
+    def subgoals(self) -> int:
+        """Number of subgoals that were begun."""
+        return int(self.summary['subgoals'])
+
+
+@dataclass(frozen=True)
+class RecordedTrial:
+    """A trial of a bag.
+
+    Attributes:
+        trial_id: of this run of it.
+        record: made from its states and subgoals. Its status is building if they do not lead to
+            an end.
+        outcome: what was published at its end; None if that is not in the bag.
+        spans_files: whether it was under way where one file ends and the next begins, or before
+            the recorder of the next one had found all publishers.
+    """
+
+    trial_id: str
+    record: TrialRecord
+    outcome: Outcome | None
+    spans_files: bool = False
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the bag has its end."""
+        has_outcome = self.outcome is not None and not self._has_gap
+        return has_outcome or self.record.status is not TrialStatus.BUILDING
+
+    @property
+    def _has_gap(self) -> bool:
+        """Whether messages are missing that led to the outcome, and may be."""
+        if self.outcome is None or not self.spans_files:
+            return False
+        lacks_states = len(self.record.observations) <= self.outcome.sequence
+        lacks_subgoals = self.record.subgoals < self.outcome.subgoals
+        return lacks_states or lacks_subgoals or self.record.status is TrialStatus.BUILDING
+
+    def contradictions(self) -> Iterator[str]:
+        """Everything that does not follow from the rest, a sentence each."""
+        record, outcome = self.record, self.outcome
+        if outcome is not None and self._has_gap:
+            found = record.placements
+            if record.spec.world.obeys and outcome.placements[: len(found)] != found:
+                yield 'the outcome has other placements than the messages that led there'
+            yield from verify.contradictions(begun(record))
+            return
+        if outcome is not None and record.status is TrialStatus.BUILDING:
+            status = outcome.status.value
+            yield f'the outcome says {status!r}, but messages that lead there are not in the bag'
+            return
+        if outcome is not None:
+            yield from _differences(record, outcome)
+        yield from verify.contradictions(record if self.is_over else begun(record))
+
+
+def _differences(record: TrialRecord, outcome: Outcome) -> Iterator[str]:
+    found = {'status': record.status.value, **record.summary(), 'placements': record.placements}
+    published = {
+        'status': outcome.status.value,
+        **outcome.summary,
+        'placements': outcome.placements,
+    }
+    for name, value in published.items():
+        if value != found[name]:
+            yield f'the outcome says {name} {_show(value)}, the messages {_show(found[name])}'
+
+
+def _show(value: object) -> str:
+    if isinstance(value, tuple):
+        return f'of {len(value)} blocks'
+    return repr(value) if isinstance(value, str) else str(value)
+
+
+def begun(record: TrialRecord) -> TrialRecord:
+    """As much of a record as has both observations and decisions, as if cancelled there."""
+    executed: dict[int, int] = {}
+    last = 0
+    for span in spans_of(record):
+        executed[span.decision] = span.subgoal + 1
+        last = span.progress.sequence
+        if span.progress.is_open:  # what was begun after it is not seen yet
+            break
+    return _cut(record, executed, last, '')
+
+
+def cancelled(memory: scribe.Memory, outcome: Outcome) -> TrialRecord:
+    """The record when the trial was cancelled: other nodes may have gone on a little."""
+    record = memory.record()
+    executed: dict[int, int] = {}
+    left = outcome.subgoals
+    for index, entry in enumerate(record.decisions):
+        count = min(entry.executed, left)
+        left -= count
+        if count or not entry.decision.subgoals:
+            executed[index] = count
+    return _cut(record, executed, outcome.sequence, outcome.reason)
+
+
+def _cut(record: TrialRecord, executed: Mapping[int, int], last: int, reason: str) -> TrialRecord:
+    """A record that was cancelled after an observation.
+
+    Args:
+        record: the whole.
+        executed: number of subgoals that were begun, by the index of the decisions that are kept.
+        last: number of the last observation that is kept.
+        reason: why it was cancelled.
+    """
+    decisions = tuple(
+        replace(record.decisions[index], executed=count) for index, count in executed.items()
+    )
+    places = {entry.sequence for entry in decisions}
+    return replace(
+        record,
+        status=TrialStatus.CANCELLED,
+        observations=record.observations[: last + 1],
+        decisions=decisions,
+        proposals=tuple(p for p in record.proposals if p.sequence in places),
+        reason=reason,
+    )

@@ -1,0 +1,143 @@
+"""Every outline that legal placements lead to, and the number of ways to each. Compiled.
+
+What is legal depends on the shadow of what is built alone (see :mod:`.moves`), so that states with
+one shadow go on alike and are one outline. Outlines are taken by rising number of cells, so that all
+ways to one are known before it is left.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blocks_planning.board.kernels.compiling import inlined, kernel
+from blocks_planning.board.kernels.masks import (
+    count,
+    digest,
+    is_empty,
+    load,
+    lowest,
+    store,
+    without_lowest,
+)
+from blocks_planning.board.kernels.moves import legal_moves
+
+FULL = -1
+"""There are more outlines than the memory holds."""
+OVERFLOW = -2
+"""A number of ways needs more words."""
+CANCELLED = -3
+"""The cancel flag was up."""
+_CHECK_EVERY = 4096
+_NONE = -1
+
+
+class Walks(NamedTuple):
+    """The outlines found, by number; ``mask`` is uint64 (n,) or (n, 4) as in the tables."""
+
+    shadow: np.ndarray  # mask (n,)
+    ways: np.ndarray  # uint64 (n, words): sequences that lead here; little-endian
+    whole: np.ndarray  # uint64 (n, words): those of them that leave no hole in the region
+    following: np.ndarray  # int32 (n,): another outline with equally many cells, or -1
+    first: np.ndarray  # int32 (cells + 1,): an outline with that many cells, or -1
+    slots: np.ndarray  # int32 (2**k,), at least twice n: a hash table of outlines, -1 where free
+    ended: np.ndarray  # uint64 (1, words): sequences after which nothing legal is left
+    moves: np.ndarray  # mask (blocks,)
+
+
+def make_walks(
+    size: int, mask_shape: tuple[int, ...], words: int, cells: int, blocks: int
+) -> Walks:
+    """Memory for up to ``size`` outlines; what is not touched takes none."""
+    return Walks(
+        shadow=np.empty((size, *mask_shape), np.uint64),
+        ways=np.empty((size, words), np.uint64),
+        whole=np.empty((size, words), np.uint64),
+        following=np.empty(size, np.int32),
+        first=np.full(cells + 1, _NONE, np.int32),
+        slots=np.full(1 << (2 * size - 1).bit_length(), _NONE, np.int32),
+        ended=np.zeros((1, words), np.uint64),
+        moves=np.zeros((blocks, *mask_shape), np.uint64),
+    )
+
+
+@inlined
+def _add(numbers, index, more, other):
+    """Add number ``other`` of ``more``; return whether it overflows."""
+    carry = np.uint64(0)
+    for word in range(numbers.shape[1]):
+        total = more[other, word] + carry
+        carry = np.uint64(total < carry)
+        numbers[index, word] += total
+        carry += np.uint64(numbers[index, word] < total)
+    return carry != np.uint64(0)
+
+
+@inlined
+def _enter(walks, found, shadow):
+    """The number of an outline, and how many there are now; FULL if it has no room."""
+    last = np.uint64(walks.slots.size - 1)
+    slot = digest(shadow) & last
+    while walks.slots[slot] >= 0:
+        if load(walks.shadow, walks.slots[slot]) == shadow:
+            return np.int64(walks.slots[slot]), found
+        slot = (slot + np.uint64(1)) & last
+    if found == walks.following.size:
+        return FULL, found
+    walks.slots[slot] = found
+    store(walks.shadow, found, shadow)
+    for word in range(walks.ways.shape[1]):
+        walks.ways[found, word] = np.uint64(0)
+        walks.whole[found, word] = np.uint64(0)
+    cells = count(shadow)
+    walks.following[found] = walks.first[cells]
+    walks.first[cells] = found
+    return found, found + 1
+
+
+@kernel
+def walk(walks, tables, region, cancel):
+    """Find every outline that legal placements reach from the empty board, and the ways to each.
+
+    Args:
+        walks: memory, as it was made.
+        tables: of the region.
+        region: its cells and none, mask (2,).
+        cancel: uint8 (1,).
+
+    Returns:
+        The number of outlines, or FULL, OVERFLOW or CANCELLED.
+    """
+    wanted = load(region, 0)
+    state, found = _enter(walks, 0, load(region, 1))
+    walks.ways[0, 0] = np.uint64(1)
+    walks.whole[0, 0] = np.uint64(1)
+    looked_at = 0
+    for cells in range(tables.cells + 1):
+        state = np.int64(walks.first[cells])
+        while state >= 0:
+            if looked_at % _CHECK_EVERY == 0 and cancel[0] != 0:
+                return CANCELLED
+            looked_at += 1
+            shadow = load(walks.shadow, state)
+            covered = count(shadow & wanted)
+            children = legal_moves(tables, shadow, walks.moves, 0)
+            if children == 0 and _add(walks.ended, 0, walks.ways, state):
+                return OVERFLOW
+            for block in range(tables.area.size):
+                places = load(walks.moves, block)
+                while not is_empty(places):
+                    move = block * tables.cells + lowest(places)
+                    places = without_lowest(places)
+                    after = shadow | load(tables.shadow, move)
+                    child, found = _enter(walks, found, after)
+                    if child < 0:
+                        return FULL
+                    if _add(walks.ways, child, walks.ways, state):
+                        return OVERFLOW
+                    # Without a hole the shadow has no cell of the region that is not filled.
+                    if count(after & wanted) == covered + tables.area[block]:
+                        _add(walks.whole, child, walks.whole, state)
+            state = np.int64(walks.following[state])
+    return found

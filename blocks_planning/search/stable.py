@@ -1,0 +1,210 @@
+"""Searches that never plan a tower that falls: ``bfs`` and ``random`` with loose blocks.
+
+They generate only children that statics lets stand (:mod:`blocks_planning.board.statics`), and
+are otherwise the searches of :mod:`.searches`, draw for draw: where nothing falls, they give the
+same placements at the same cost. A state is a set of placed blocks here, not of cells, since two
+towers of the same cells can differ in whether they stand; so nothing is merged. Kernels can't ask
+a linear program, hence this is Python. It evaluates thousands of states in a second where the
+compiled searches evaluate tens of millions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from blocks_planning.board import rules
+from blocks_planning.board.blocks import Placed
+from blocks_planning.board.geometry import Mask, area
+from blocks_planning.board.statics import holds
+from blocks_planning.errors import ConfigurationError, InvalidInput
+from blocks_planning.search.randomness import MAX_SEED, Generator, mask_words
+from blocks_planning.search.result import (
+    DEFAULT_BUDGET,
+    MAX_BUDGET,
+    CancelToken,
+    Problem,
+    SolveResult,
+    SolveStatus,
+)
+from blocks_planning.search.searches import BreadthFirst, RandomPlacement, Search
+from blocks_planning.settings import check_whole
+
+Stays = Callable[[tuple[Placed, ...]], bool]
+"""Whether a tower of these blocks stays up."""
+Path = tuple[Placed, ...]
+
+_DEAD_END = -1
+
+
+class _Cancelled(Exception):
+    """The token was used."""
+
+
+class _Tower(NamedTuple):
+    """A state: what is filled, and by which blocks."""
+
+    built: Mask
+    blocks: Path
+
+
+class _Node(NamedTuple):
+    """A node of a search tree: its state, and the placements that led there."""
+
+    tower: _Tower
+    path: Path
+
+
+class _Choice(NamedTuple):
+    """What a search does next: placements (none if it is stuck), and states evaluated."""
+
+    path: Path
+    evaluated: int
+
+
+def solve_stable(
+    problem: Problem,
+    search: Search,
+    seed: int,
+    budget: int = DEFAULT_BUDGET,
+    cancel: CancelToken | None = None,
+    blocks: Path = (),
+    stays: Stays = holds,
+) -> SolveResult:
+    """Fill a region by placements after each of which the tower stays up.
+
+    Attempts, budget and costs are those of :func:`.solve.solve`; the states that are generated,
+    and so evaluated, are those that stay up.
+
+    Args:
+        problem: state and region.
+        search: bfs or random.
+        seed: of the trial, 0 to 2**64 - 1.
+        budget: b [states], 0 to 2**63 - 1.
+        cancel: ends the solve from another thread.
+        blocks: the blocks that fill the problem's state.
+        stays: decides which towers stay up.
+
+    Raises:
+        ConfigurationError: for another search, if the seed or the budget is out of its range, or
+            if statics needs scipy and it is not installed.
+        InvalidInput: if ``blocks`` do not fill what is built.
+    """
+    check_whole('seed', seed, 0, MAX_SEED)
+    check_whole('budget', budget, 0, MAX_BUDGET)
+    if not isinstance(search, BreadthFirst | RandomPlacement):
+        raise ConfigurationError(f'stable must be used with bfs or random, got {search.name!r}')
+    board = problem.task.board
+    if sum(rules.cells_of(board, block) for block in blocks) != problem.built:
+        raise InvalidInput(
+            f'blocks {[tuple(block) for block in blocks]} must fill exactly what is built, '
+            f'{problem.built:#x}'
+        )
+    finder = _Finder(problem, search, stays, cancel or CancelToken())
+    start = _Tower(problem.built, blocks)
+    if start.built == problem.region:
+        return SolveResult(SolveStatus.SOLVED)
+    if not finder.has_child(start):
+        return SolveResult(SolveStatus.UNSOLVABLE_PROVEN)
+    return _attempts(finder, start, seed, budget)
+
+
+def _attempts(finder: _Finder, start: _Tower, seed: int, budget: int) -> SolveResult:
+    """Attempt after attempt until one succeeds or the budget is reached."""
+    words = [*mask_words(start.built), *mask_words(finder.problem.region)]
+    total = number = 0
+    while True:
+        generator = Generator([seed, *words, number])
+        try:
+            path, cost = finder.attempt(start, generator)
+        except _Cancelled:
+            cost = finder.evaluated
+            return SolveResult(SolveStatus.CANCELLED, planning_cost=cost, attempts=number)
+        total += cost
+        number += 1
+        if path is not None:
+            return SolveResult(SolveStatus.SOLVED, path, cost, total, number)
+        if total >= budget or number >= budget:
+            return SolveResult(SolveStatus.BUDGET_EXHAUSTED, planning_cost=total, attempts=number)
+
+
+class _Finder:
+    """Looks ahead in one problem; ``evaluated`` counts the states of all attempts."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        search: BreadthFirst | RandomPlacement,
+        stays: Stays,
+        cancel: CancelToken,
+    ) -> None:
+        self.problem = problem
+        self.evaluated = 0
+        self._search = search
+        self._stays = stays
+        self._cancel = cancel
+
+    def attempt(self, tower: _Tower, generator: Generator) -> tuple[Path | None, int]:
+        """One attempt: the path to the filled region or None, and states evaluated."""
+        path: Path = ()
+        cost = 0
+        while tower.built != self.problem.region:
+            choice = self._choose(tower, generator)
+            cost += choice.evaluated
+            if not choice.path:
+                return None, cost
+            for placed in choice.path:
+                tower = self._placed(tower, placed)
+            path += choice.path
+        return path, cost
+
+    def has_child(self, tower: _Tower) -> bool:
+        """Whether a legal placement is left after which the tower stays up."""
+        return next(self._children(tower), None) is not None
+
+    def _choose(self, tower: _Tower, generator: Generator) -> _Choice:
+        if isinstance(self._search, BreadthFirst):
+            return self._look_ahead(tower, self._search.depth, generator)
+        legal = [placed for placed, _ in self._children(tower)]
+        return _Choice((legal[generator.below(len(legal))],) if legal else (), 0)
+
+    def _look_ahead(self, tower: _Tower, depth: int, generator: Generator) -> _Choice:
+        """Breadth-first lookahead, as in the compiled search."""
+        level = [_Node(tower, ())]
+        seen: list[_Node] = []
+        for _ in range(depth):
+            following: list[_Node] = []
+            for node in level:
+                if node.tower.built == self.problem.region:
+                    return _Choice(node.path, len(seen) + len(following))
+                for placed, child in self._children(node.tower):
+                    following.append(_Node(child, (*node.path, placed)))
+                    self.evaluated += 1
+            seen += following
+            level = following
+        if not seen:
+            return _Choice((), 0)
+        values = [self._value(node.tower) for node in seen]
+        best = max(values)
+        winners = [node for node, value in zip(seen, values, strict=True) if value == best]
+        return _Choice(winners[generator.below(len(winners))].path[:1], len(seen))
+
+    def _value(self, tower: _Tower) -> int:
+        """Complete is best, a dead end worst, else the more cells the better."""
+        if tower.built == self.problem.region:
+            return self.problem.task.board.size + 1
+        return area(tower.built) if self.has_child(tower) else _DEAD_END
+
+    def _children(self, tower: _Tower) -> Iterator[tuple[Placed, _Tower]]:
+        """The legal placements after which the tower stays up, in order of generation."""
+        if self._cancel.cancelled:
+            raise _Cancelled
+        task = self.problem.task
+        for placed in rules.legal_placements(task, tower.built, self.problem.region):
+            child = self._placed(tower, placed)
+            if self._stays(child.blocks):
+                yield placed, child
+
+    def _placed(self, tower: _Tower, placed: Placed) -> _Tower:
+        cells = rules.cells_of(self.problem.task.board, placed)
+        return _Tower(tower.built | cells, (*tower.blocks, placed))

@@ -1,0 +1,107 @@
+"""The number of states that can be reached, without visiting them.
+
+A set of filled cells can be reached exactly if it can be tiled by blocks each of which stands on the
+ground or on at least one filled cell (see :mod:`.exact`). The sets are counted cell by cell, row by
+row from the left: what matters of the cells decided so far is which of the last row are filled, and
+all sets of cells further on that a tiling of them may have claimed. Many sets of filled cells have
+this in common, and are counted together. Each set is counted once, however many tilings it has.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from blocks_planning.board.geometry import Board, Mask
+from blocks_planning.board.task import Task
+from blocks_planning.errors import LimitExceeded
+from blocks_planning.search.result import CancelToken
+
+MAX_PROFILES = 500_000
+"""Most profiles that are kept at one cell."""
+_CHECK_EVERY = 1024
+
+
+class Profile(NamedTuple):
+    """What filled cells have in common as far as the cells that follow are concerned."""
+
+    below: Mask  # filled cells of this row and the row below
+    claims: frozenset[Mask]  # cells not yet decided that blocks reach into, in every tiling
+
+
+class _Rectangle(NamedTuple):
+    cells: Mask
+    support: Mask  # the cells right below it; none on the ground
+
+
+_Counts = dict[Profile, int]
+
+
+def count_states(
+    task: Task, limit: int = MAX_PROFILES, cancel: CancelToken | None = None
+) -> int | None:
+    """Number of different sets of filled cells that legal placements reach; None if cancelled.
+
+    The empty board is one of them.
+
+    Raises:
+        LimitExceeded: if more than ``limit`` profiles would be kept.
+    """
+    board, cancel = task.board, cancel or CancelToken()
+    counts: _Counts = {Profile(0, frozenset([0])): 1}
+    for row in range(board.height):
+        for column in range(board.width):
+            cell = board.mask([(column, row)])
+            if cell & task.silhouette:
+                following = _decide(counts, cell, _rectangles(task, column, row), cancel)
+                if following is None:
+                    return None
+                counts = following
+            if len(counts) > limit:
+                raise LimitExceeded(
+                    f'the states of this silhouette of {board.width} x {board.height} cells have '
+                    f'more than the limit of {limit} profiles'
+                )
+        counts = _forget_below(counts, board, row)
+    return sum(number for profile, number in counts.items() if 0 in profile.claims)
+
+
+def _rectangles(task: Task, column: int, row: int) -> list[_Rectangle]:
+    """The blocks that may lie with their lower left cell at a place."""
+    board, found = task.board, []
+    for width, height in task.library:
+        if column + width > board.width or row + height > board.height:
+            continue
+        cells = board.rectangle(column, row, width, height)
+        if not cells & ~task.silhouette:
+            support = board.rectangle(column, row - 1, width, 1) if row else 0
+            found.append(_Rectangle(cells, support))
+    return found
+
+
+def _decide(
+    counts: _Counts, cell: Mask, rectangles: list[_Rectangle], cancel: CancelToken
+) -> _Counts | None:
+    """The profiles after a cell, which is filled or not; None if cancelled."""
+    following: _Counts = {}
+    for index, ((below, claims), number) in enumerate(counts.items()):
+        if index % _CHECK_EVERY == 0 and cancel.cancelled:
+            return None
+        standing = [cells for cells, support in rectangles if not support or support & below]
+        empty = frozenset(claim for claim in claims if not claim & cell)
+        filled = frozenset(claim & ~cell for claim in claims if claim & cell) | frozenset(
+            (claim | cells) & ~cell for claim in empty for cells in standing if not claim & cells
+        )
+        for profile in (Profile(below, empty), Profile(below | cell, filled)):
+            if profile.claims:
+                following[profile] = following.get(profile, 0) + number
+    return following
+
+
+def _forget_below(counts: _Counts, board: Board, row: int) -> _Counts:
+    """The profiles with no more than the filled cells of a row, which is finished."""
+    this_row = board.rectangle(0, row, board.width, 1)
+    following: _Counts = {}
+    for (below, claims), number in counts.items():
+        profile = Profile(below & this_row, claims)
+        following[profile] = following.get(profile, 0) + number
+    return following

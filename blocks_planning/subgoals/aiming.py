@@ -1,0 +1,37 @@
+"""What a planner aims at once a perfect reconstruction is out of reach.
+
+A cell filled outside the silhouette, or a target cell that a block covers, makes a perfect
+reconstruction impossible. With aim ``perfect`` a planner gives up when no candidate can be solved;
+with aim ``most`` it goes on until nothing more can be filled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from blocks_planning.board import rules
+from blocks_planning.settings import setting
+from blocks_planning.subgoals.decision import Situation
+from blocks_planning.subgoals.regions import Region, RegionFamily
+
+AIMS = ('perfect', 'most')
+
+
+def aim_setting() -> Any:
+    """The setting ``aim`` of a strategy."""
+    return setting('perfect', 'What is built where perfection is out of reach.', choices=AIMS)
+
+
+def regions_to_aim_at(family: RegionFamily, situation: Situation, aim: str) -> list[Region]:
+    """The regions of a family in a state; with aim ``most`` those that can still be won.
+
+    Then the silhouette is taken without the cells that nothing can reach any more, and together
+    with what is built.
+    """
+    task, built = situation.task, situation.built
+    if aim == 'perfect':
+        return family.regions(task, built)
+    buried = rules.shadow(task.board, built) & ~built
+    reachable = replace(task, silhouette=task.silhouette & ~buried | built)
+    return family.regions(reachable, built, partial=True)

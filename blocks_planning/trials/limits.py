@@ -1,0 +1,15 @@
+"""Trials that ended because a search met the limit of its memory."""
+
+from __future__ import annotations
+
+from blocks_planning.search.result import SolveStatus
+from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.status import TrialStatus
+
+
+def ended_at_a_limit(record: TrialRecord) -> bool:
+    """Whether the planner gave up without knowing if there is a way."""
+    if record.status is not TrialStatus.GAVE_UP:
+        return False
+    candidates = record.decisions[-1].decision.candidates
+    return any(candidate.status is SolveStatus.LIMIT_EXCEEDED for candidate in candidates)

@@ -1,0 +1,133 @@
+"""Are the candidates, the choice and the costs of a decision those of the strategy?
+
+The strategy itself is asked for its chains, its values and its choice; nothing here knows how a
+strategy of a certain name decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from blocks_planning.search.result import SolveStatus
+from blocks_planning.subgoals.decision import Candidate, Chain, Decision, Situation
+from blocks_planning.subgoals.planner import cells_added, queries_along
+from blocks_planning.subgoals.proposals import proposed_at
+from blocks_planning.trials.record import DecisionRecord, TrialRecord
+from blocks_planning.worlds.observation import Blocks, blocks_after
+
+
+def situation_of(record: TrialRecord, index: int) -> Situation:
+    """The situation of a decision, but for the answers of the searcher."""
+    entry = record.decisions[index]
+    blocks: Blocks = ()
+    for observation in record.observations[: entry.sequence + 1]:
+        blocks = blocks_after(blocks, observation)
+    return Situation(
+        task=record.spec.task,
+        built=entry.decision.built,
+        seed=record.spec.seed,
+        known={},
+        proposals=proposed_at(record.proposals, entry.sequence),
+        blocks=blocks,
+        decisions=index,
+    )
+
+
+def wrong_decision(record: TrialRecord, index: int) -> Iterator[str]:
+    """What is wrong with a decision, apart from how it was executed."""
+    entry = record.decisions[index]
+    situation = situation_of(record, index)
+    chains = list(record.spec.strategy.chains(situation))
+    considered = [candidate.regions for candidate in entry.decision.candidates]
+    if considered != chains[: len(considered)] or len(considered) != len(chains):
+        yield 'its candidates are not those of the strategy'
+        return
+    for number, candidate in enumerate(entry.decision.candidates):
+        for sentence in _wrong_candidate(record, candidate, situation):
+            yield f'candidate {number}: {sentence}'
+    yield from _wrong_choice(record, entry, situation)
+    yield from _wrong_costs(record, entry.decision)
+    yield from _wrong_ratings(record, entry.decision, situation)
+    yield from _wrong_subgoals(record, entry.decision, chains)
+
+
+def _wrong_candidate(
+    record: TrialRecord, candidate: Candidate, situation: Situation
+) -> Iterator[str]:
+    cells = cells_added(candidate.regions, situation.built)
+    if candidate.cells != cells:
+        yield f'adds {cells} cells, not {candidate.cells}'
+    if candidate.status is SolveStatus.CANCELLED:
+        yield 'was cancelled, which ends a trial before it decides'
+    value = None
+    if candidate.is_solved:
+        value = record.spec.strategy.value(candidate.cells, candidate.planning_cost)
+    if candidate.value != value:
+        yield f'has value {value}, not {candidate.value}'
+
+
+def _wrong_choice(
+    record: TrialRecord, entry: DecisionRecord, situation: Situation
+) -> Iterator[str]:
+    decision = entry.decision
+    if entry.executed > len(decision.subgoals):
+        yield f'{entry.executed} of {len(decision.subgoals)} subgoals cannot have been executed'
+    if (decision.chosen is None) != (not decision.subgoals):
+        yield 'the chosen candidate and the executed subgoals are inconsistent'
+    if decision.chosen is not None and decision.chosen >= len(decision.candidates):
+        yield (
+            f'chosen index {decision.chosen} is out of range: '
+            f'there are {len(decision.candidates)} candidates'
+        )
+        return
+    expected = record.spec.strategy.choose(decision.candidates, situation)
+    if decision.chosen != expected:
+        yield f'candidate {decision.chosen} is chosen, but the strategy chooses {expected}'
+
+
+def _wrong_costs(record: TrialRecord, decision: Decision) -> Iterator[str]:
+    expected = record.spec.strategy.considered(decision.candidates)
+    if decision.subgoal_planning_cost != expected:
+        yield f'subgoal planning cost {expected} states, not {decision.subgoal_planning_cost}'
+
+
+def _wrong_ratings(record: TrialRecord, decision: Decision, situation: Situation) -> Iterator[str]:
+    strategy = record.spec.strategy
+    unrated = [replace(candidate, probability=None) for candidate in decision.candidates]
+    if strategy.rated(unrated, situation) != decision.candidates:
+        yield 'the probabilities of its candidates are not those of the strategy'
+    sequences = strategy.sequences(situation)
+    if decision.sequences != sequences:
+        yield f'{sequences} sequences exist, not {decision.sequences}'
+
+
+def _wrong_subgoals(record: TrialRecord, decision: Decision, chains: list[Chain]) -> Iterator[str]:
+    """Subgoals that are not those of the chosen chain, or whose plans do not add up."""
+    if decision.chosen is None or decision.chosen >= len(chains):
+        return
+    strategy = record.spec.strategy
+    executed = strategy.subgoals_of(chains[decision.chosen])
+    expected = [
+        (region, query.target)
+        for region, query in zip(executed, queries_along(executed, decision.built), strict=True)
+    ]
+    if [(one.region, one.target) for one in decision.subgoals] != expected:
+        yield 'its subgoals are not those of the chosen candidate'
+        return
+    cost = sum(subgoal.planning_cost for subgoal in decision.subgoals)
+    whole = len(executed) == len(chains[decision.chosen])
+    claimed = decision.candidates[decision.chosen].planning_cost
+    if (cost != claimed) if whole else (cost > claimed):
+        yield 'the costs of its subgoals do not add up to that of the chosen candidate'
+    for number, subgoal in enumerate(decision.subgoals):
+        execute = strategy.execute(len(subgoal.placements))
+        if subgoal.execute != execute:
+            yield (
+                f'subgoal {number}: {execute} of its placements are to be executed, '
+                f'not {subgoal.execute}'
+            )
+        if subgoal.solution_cost > subgoal.planning_cost:
+            yield f'subgoal {number}: its solution cost more than all attempts'
+        if subgoal.attempts < 1:
+            yield f'subgoal {number}: is solved without an attempt'

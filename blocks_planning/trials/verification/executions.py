@@ -1,0 +1,99 @@
+"""Were the decisions made in the states in which they were due, and carried out as planned?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from blocks_planning.board import rules
+from blocks_planning.board.geometry import Board, Mask
+from blocks_planning.subgoals.decision import Subgoal
+from blocks_planning.trials.execution import History, Progress, history, progress_of
+from blocks_planning.trials.record import DecisionRecord, TrialRecord
+from blocks_planning.trials.status import TrialStatus
+
+_ENDED_FROM_OUTSIDE = (TrialStatus.CANCELLED, TrialStatus.COLLAPSED, TrialStatus.STUCK)
+"""Statuses that can end a trial in the middle of a plan that goes as expected."""
+
+
+def wrong_execution(record: TrialRecord) -> Iterator[str]:
+    """The first decision that was not due, or not carried out as planned."""
+    seen = history(record.spec.task.board, record.observations)
+    due = 0
+    for index, entry in enumerate(record.decisions):
+        is_last = index == len(record.decisions) - 1
+        sentence, due = _execution(record, entry, seen, due, is_last)
+        if sentence:
+            yield f'decision {index}: {sentence}'
+            return
+    if due < len(seen.states) - 1:
+        yield f'no decision led to observation {due + 1}'
+
+
+def _execution(
+    record: TrialRecord, entry: DecisionRecord, seen: History, due: int, is_last: bool
+) -> tuple[str, int]:
+    """What is wrong with an execution, or '' and the sequence where the next decision is due."""
+    decision = entry.decision
+    if entry.sequence != due:
+        return f'was made at observation {entry.sequence}, but was due at {due}', due
+    if due >= len(seen.states) or seen.states[due] != decision.built:
+        return f'the state of observation {due} is not {decision.built:#x}', due
+    if decision.chosen is None:
+        return ('' if is_last else 'gives up, but is not the last'), due
+    start, built = due, decision.built
+    for number, subgoal in enumerate(decision.subgoals):
+        sentence = _wrong_plan(record.spec.task.board, built, subgoal)
+        if sentence:
+            return f'subgoal {number}: {sentence}', due
+        if number < entry.executed:
+            progress = progress_of(record.spec, built, subgoal, start, seen)
+            sentence = _wrong_orders(record, subgoal, start, progress)
+            if sentence:
+                return f'subgoal {number}: {sentence}', due
+            start = progress.sequence
+            if not progress.is_done:
+                return _cut_short(record, entry, number, progress), start
+        built = subgoal.target
+    return _left_out(record, entry), start
+
+
+def _wrong_plan(board: Board, built: Mask, subgoal: Subgoal) -> str:
+    for placed in subgoal.placements:
+        if rules.drop(board, built, placed.placement) != placed:
+            return f'block {placed} of its plan is not where it comes to rest'
+        built |= rules.cells_of(board, placed)
+    return '' if built == subgoal.target else 'its plan does not fill it'
+
+
+def _wrong_orders(record: TrialRecord, subgoal: Subgoal, start: int, progress: Progress) -> str:
+    """Why the orders of an execution are not those of its plan; '' if they are."""
+    done = 0
+    for sequence in range(start + 1, progress.sequence + 1):
+        seen = record.observations[sequence]
+        if seen.ordered is not None and seen.ordered != subgoal.placements[done].placement:
+            return f'observation {sequence} is of an order that was not planned'
+        done += bool(seen.landed)
+    return ''
+
+
+def _cut_short(
+    record: TrialRecord,
+    entry: DecisionRecord,
+    number: int,
+    progress: Progress,
+) -> str:
+    """Why an execution must not end before everything was carried out; '' if it may."""
+    if number < entry.executed - 1:
+        return f'subgoal {number + 1} was begun before subgoal {number} was filled'
+    at_end = progress.sequence == len(record.observations) - 1
+    if progress.is_surprised or (at_end and record.status in _ENDED_FROM_OUTSIDE):
+        return ''
+    return f'subgoal {number} was not executed as planned'
+
+
+def _left_out(record: TrialRecord, entry: DecisionRecord) -> str:
+    """Why subgoals must not be left out after all that were begun are filled; '' if they may."""
+    left = len(entry.decision.subgoals) - entry.executed
+    if left and record.status not in _ENDED_FROM_OUTSIDE:
+        return f'{entry.executed} of its {len(entry.decision.subgoals)} subgoals were executed'
+    return ''

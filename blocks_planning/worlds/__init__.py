@@ -1,0 +1,1 @@
+"""Worlds: what becomes of an order, and what has been observed."""
