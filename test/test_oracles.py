@@ -979,12 +979,12 @@ def test_trials_can_be_replayed() -> None:
             {'search': 'best_first', 'iterations': 4},
         ]
         settings = {**rng.choice(searches), 'budget': 8}
-        board = width, height, silhouette, library, EMPTY, seed
+        board = width, height, silhouette, library
         for trial in (
-            planners.none(*board, **settings),
-            planners.scoping(*board, lam=0.1, **settings),
-            planners.scoping(*board, lam=0.1, commit='action', **settings),
-            planners.full(*board, **settings),
+            planners.none(*board, EMPTY, seed, **settings),
+            planners.scoping(*board, EMPTY, seed, lam=0.1, **settings),
+            planners.scoping(*board, EMPTY, seed, lam=0.1, commit='action', **settings),
+            planners.full(*board, seed, **settings),
         ):
             state = EMPTY
             for placement in trial.placements:

@@ -7,7 +7,9 @@ import pytest
 from blocks_planning.board.blocks import Block, Placed, Placement
 from blocks_planning.board.geometry import Board
 
-pytest.importorskip('mujoco', reason='the robot is an extra: pip install -r requirements/robot.in')
+pytest.importorskip(
+    'mujoco', reason='the extra robot is not installed: pip install -r requirements/lock-robot.txt'
+)
 
 from blocks_planning.robot.phases import ACT, Phase, Reason, Report
 from blocks_planning.robot.robot import TICK, Robot

@@ -8,7 +8,9 @@ from blocks_planning.board.blocks import Block, Placement
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import InvalidInput
 
-pytest.importorskip('mujoco', reason='the robot is an extra: pip install -r requirements/robot.in')
+pytest.importorskip(
+    'mujoco', reason='the extra robot is not installed: pip install -r requirements/lock-robot.txt'
+)
 
 from blocks_planning.robot.robot import Robot
 from blocks_planning.robot.settings import RobotSettings

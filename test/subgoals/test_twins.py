@@ -74,7 +74,7 @@ def _twin_trial(spec: TrialSpec, strategy: str, settings: dict[str, Any]) -> ora
         task.board.height,
         frozenset(task.board.cells(task.silhouette)),
         [(block.width, block.height) for block in task.library],
-        frozenset(),
+        *(() if strategy == 'full' else (frozenset(),)),
         spec.seed,
         search=search['search'],
         budget=spec.budget,
