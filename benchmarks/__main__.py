@@ -13,7 +13,7 @@ import click
 
 from benchmarks.measure import Figure
 
-PROGRAMS = ('search', 'paper_table1', 'trials', 'start', 'graph', 'page')
+PROGRAMS = ('search', 'many', 'paper_table1', 'trials', 'start', 'graph', 'page')
 
 
 @click.command()

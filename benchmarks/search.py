@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from itertools import product
 
 import numpy as np
 from oracles import search as oracle
 from oracles.randomness import attempt_generator
 
 from benchmarks.measure import Figure, best_rate, seconds
-from blocks_planning.board.geometry import Mask, area
 from blocks_planning.board.kernels.compiling import kernel
 from blocks_planning.board.kernels.masks import load, pack
 from blocks_planning.board.stimuli import find_stimuli
@@ -19,9 +17,8 @@ from blocks_planning.board.task import Task
 from blocks_planning.search.compiled import tables_of
 from blocks_planning.search.exact import analyse
 from blocks_planning.search.kernels import breadth_first, lookahead
-from blocks_planning.search.many import cores, solve_many
 from blocks_planning.search.result import Problem
-from blocks_planning.search.searches import AStar, Beam, BreadthFirst, Search, TreeSearch
+from blocks_planning.search.searches import AStar, Beam, Search, TreeSearch
 from blocks_planning.search.solve import solve
 
 TASKS = [Task(s.board, s.silhouette) for s in find_stimuli('cogsci2021')]
@@ -90,66 +87,6 @@ def _attempts(search: Search) -> int:
     return sum(solve(problem, search, 0, budget=0).planning_cost for problem in problems)
 
 
-def rectangles(task: Task, built: Mask) -> list[Problem]:
-    """The region of each rectangle of silhouette cells that can be filled next.
-
-    Its edge rows and columns contain silhouette, it holds no built cell, and 2 cells to 3/4 of the
-    silhouette. It is filled together with what is built, and rests on the ground or on that.
-    """
-    board, most = task.board, area(task.silhouette) * 3 // 4
-    regions = set()
-    for left, bottom in product(range(board.width), range(board.height)):
-        for width, height in product(
-            range(1, board.width - left + 1), range(1, board.height - bottom + 1)
-        ):
-            box = board.rectangle(left, bottom, width, height)
-            edges = (
-                board.rectangle(left, bottom, width, 1),
-                board.rectangle(left, bottom + height - 1, width, 1),
-                board.rectangle(left, bottom, 1, height),
-                board.rectangle(left + width - 1, bottom, 1, height),
-            )
-            cells = box & task.silhouette
-            ground = built << 1 | board.ground
-            if (
-                2 <= area(cells) <= most
-                and not box & built
-                and all(edge & cells for edge in edges)
-                and cells & ground
-            ):
-                regions.add(built | cells)
-    return [Problem(task, built, region) for region in sorted(regions)]
-
-
-def _two_decisions(task: Task) -> tuple[list[Problem], list[Problem]]:
-    """The problems of a first decision, and those of a second after each of its rectangles."""
-    first = rectangles(task, 0)
-    solved = solve_many(first, BreadthFirst(3), 0)
-    after = [
-        problem
-        for before, result in zip(first, solved, strict=True)
-        if result.solved
-        for problem in rectangles(task, before.region)
-    ]
-    return first, after
-
-
-def _many(quick: bool) -> Iterator[Figure]:
-    """Rectangles of tower 9: a decision with horizon 1, and what horizon 2 adds to it."""
-    task = TASKS[8]
-    first, after = _two_decisions(task)
-    search = BreadthFirst(3)
-    for workers in (1, cores()):
-        took = seconds(partial(solve_many, first, search, 0, workers=workers))
-        name = f'{len(first)} rectangles of tower 9, bfs 3, {workers} threads'
-        yield Figure(name, took, 's', '< 0.5')
-    alone = seconds(lambda: [solve(problem, search, 0) for problem in first])
-    yield Figure('the same, one by one', alone, 's')
-    if not quick:
-        took = seconds(partial(solve_many, after, search, 0))
-        yield Figure(f'{len(after)} rectangles after those', took, 's', '< 20')
-
-
 def run(quick: bool) -> Iterator[Figure]:
     """Rates on one core."""
     few = [TASKS[number - 1] for number in TWIN_TOWERS]
@@ -169,7 +106,6 @@ def run(quick: bool) -> Iterator[Figure]:
     for search in (Beam(1000), TreeSearch(1000)):
         rate = best_rate(partial(_attempts, search), 1 if quick else 3)
         yield Figure(f'{search.name} with 1000, 16 towers', rate / 1e6, 'million states/s')
-    yield from _many(quick)
     analyse(TASKS[0])
     exact = seconds(lambda: [analyse(task) for task in TASKS])
     yield Figure('exact, 16 towers with all row prefixes', exact, 's', '< 0.2')
