@@ -223,6 +223,7 @@ def test_every_form_gives_back_what_was_written(data: st.DataObject) -> None:
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=3),
     lambda inner: st.lists(inner, max_size=3)
     | st.dictionaries(st.sampled_from(['blocks', 'x', 'y', 'width', 'height', '\n']), inner, max_size=5),
+    max_leaves=8,
 ).map(json.dumps))  # fmt: skip
 def test_any_text_is_read_or_refused(text: str) -> None:
     for name in ('any.json', 'any.csv'):
