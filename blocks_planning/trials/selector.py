@@ -32,7 +32,6 @@ from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.worlds.observation import standing
 
-
 MOST_IN_REQUEST = 1 << 12
 """Most queries in one request."""
 
