@@ -18,7 +18,7 @@ from blocks_planning.fitting.models import parse_model
 from blocks_planning.fitting.options import OneAhead, Solves
 from blocks_planning.fitting.points import Asking, points_of
 from blocks_planning.fitting.simulation import Chooser, roll_out
-from blocks_planning.people.families import find_family
+from blocks_planning.people.families import family_names, find_family
 from blocks_planning.search.result import Problem
 from blocks_planning.search.searches import BreadthFirst
 from blocks_planning.search.solve import solve
@@ -63,7 +63,7 @@ def test_choices_of_a_person_are_the_regions_to_be_built() -> None:
     ]
 
 
-@pytest.mark.parametrize('family', FAMILIES)
+@pytest.mark.parametrize('family', family_names())
 def test_options_are_the_regions_with_what_their_solves_gave(family: str) -> None:
     task = builders.task(builders.FRAME)
     options = OneAhead(family, Solves()).options(task, 0, ASKING)
