@@ -11,8 +11,9 @@ from dataclasses import replace
 from typing import Any
 
 from blocks_planning.board import rules
+from blocks_planning.board.geometry import Mask
+from blocks_planning.board.task import Task
 from blocks_planning.settings import setting
-from blocks_planning.subgoals.decision import Situation
 from blocks_planning.subgoals.regions import Region, RegionFamily
 
 AIMS = ('perfect', 'most')
@@ -23,13 +24,12 @@ def aim_setting() -> Any:
     return setting('perfect', 'What is built where perfection is out of reach.', choices=AIMS)
 
 
-def regions_to_aim_at(family: RegionFamily, situation: Situation, aim: str) -> list[Region]:
+def regions_to_aim_at(family: RegionFamily, task: Task, built: Mask, aim: str) -> list[Region]:
     """The regions of a family in a state; with aim ``most`` those that can still be won.
 
     Then the silhouette is taken without the cells that nothing can reach any more, and together
     with what is built.
     """
-    task, built = situation.task, situation.built
     if aim == 'perfect':
         return family.regions(task, built)
     buried = rules.shadow(task.board, built) & ~built

@@ -44,7 +44,9 @@ class FullSubgoals(Planner):
         """Every rising sequence of regions that ends in the last; a blind planner plans once."""
         if self.is_blind and situation.decisions:
             return []
-        return list(rising_sequences(regions_to_aim_at(Rows(), situation, self.aim)))
+        return list(
+            rising_sequences(regions_to_aim_at(Rows(), situation.task, situation.built, self.aim))
+        )
 
     def value(self, cells: int, planning_cost: int) -> float | None:
         """V = r - lambda * c [cells]."""

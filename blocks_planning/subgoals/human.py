@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from blocks_planning.settings import setting
+from blocks_planning.subgoals.choosing import first_solved
 from blocks_planning.subgoals.decision import Candidate, Chain, Decision, Query, Situation
-from blocks_planning.subgoals.planner import Planner, first_solved, queries_along
+from blocks_planning.subgoals.planner import Planner, queries_along
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind, decisive
 from blocks_planning.subgoals.regions import drawn_region
 
@@ -65,7 +66,7 @@ class Human(Planner):
         return self._decided(chains, situation) if gives_up else []
 
     def _decided(self, chains: list[Chain], situation: Situation) -> Decision:
-        weighed = [self._weigh(chain, situation) for chain in chains]
+        weighed = self.weighed(chains, situation)
         candidates = tuple(one for one in weighed if isinstance(one, Candidate))
         return replace(self.decision(candidates, situation), sequences=len(candidates))
 

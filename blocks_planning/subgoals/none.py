@@ -8,8 +8,9 @@ from typing import ClassVar
 
 from blocks_planning.settings import setting
 from blocks_planning.subgoals.aiming import aim_setting, regions_to_aim_at
+from blocks_planning.subgoals.choosing import first_solved
 from blocks_planning.subgoals.decision import Candidate, Chain, Situation
-from blocks_planning.subgoals.planner import Planner, first_solved, queries_along
+from blocks_planning.subgoals.planner import Planner, queries_along
 from blocks_planning.subgoals.regions import Rows
 
 FAILURES = ('execute', 'give_up')
@@ -29,7 +30,7 @@ class NoSubgoals(Planner):
 
     def chains(self, situation: Situation) -> Sequence[Chain]:
         """The whole silhouette."""
-        regions = regions_to_aim_at(Rows(), situation, self.aim)
+        regions = regions_to_aim_at(Rows(), situation.task, situation.built, self.aim)
         return [(region,) for region in regions[-1:]]
 
     def value(self, cells: int, planning_cost: int) -> float | None:

@@ -1,10 +1,11 @@
 """A planner is chains x weighing x choice.
 
 * *Chains*: which sequences of regions are considered. No subgoals: the whole silhouette. Scoping:
-  each region alone. Full: every rising sequence that ends in the whole silhouette.
+  each region alone, or sequences up to a horizon. Full: every rising sequence that ends in the
+  whole silhouette.
 * *Weighing*: V = r - lambda * c of a chain whose subgoals are all solved, where c counts up to the
   first unsolved subgoal (paper, section "Subgoal planning").
-* *Choice*: the chain of highest value, ties broken uniformly.
+* *Choice*: the chain of highest value, ties broken uniformly, or a draw by probabilities.
 
 :class:`Planner` holds what all of them share; a subclass says what is its own.
 """
@@ -12,22 +13,57 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 from blocks_planning.board.geometry import Mask, area
-from blocks_planning.search.randomness import Generator, mask_words
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.settings import Configured
+from blocks_planning.subgoals.choosing import best
 from blocks_planning.subgoals.decision import (
     Candidate,
     Chain,
     Decision,
+    Known,
     Query,
     Situation,
     Subgoal,
 )
+from blocks_planning.subgoals.regions import Region
+
+
+class _Step(NamedTuple):
+    """What is known at a place on the way along a chain.
+
+    Attributes:
+        built: the cells that are filled if all subgoals up to here are.
+        cost: of their solves, up to the first unsolved one [states].
+        status: of the first unsolved one, or solved.
+        missing: the first query that is not answered.
+    """
+
+    built: Mask
+    cost: int
+    status: SolveStatus
+    missing: Query | None
+
+
+def _step(before: _Step, region: Region, known: Known) -> _Step:
+    """The next place on a way."""
+    query = Query(before.built, region.target(before.built))
+    if before.missing is not None or before.status is not SolveStatus.SOLVED:
+        return before._replace(built=query.target)
+    result = known.get(query)
+    if result is None:
+        return before._replace(built=query.target, missing=query)
+    return _Step(query.target, before.cost + result.planning_cost, result.status, None)
+
+
+def _shared(one: Chain, other: Chain) -> int:
+    """Number of regions with which two chains begin alike."""
+    pairs = enumerate(zip(one, other, strict=False))
+    return next((n for n, (a, b) in pairs if a != b), min(len(one), len(other)))
 
 
 @dataclass(frozen=True)
@@ -85,11 +121,9 @@ class Planner(Configured):
 
     def decide(self, situation: Situation) -> list[Query] | Decision:
         """See :class:`Strategy`."""
-        chains = self.chains(situation)
         missing: dict[Query, None] = {}
         candidates = []
-        for chain in chains:
-            weighed = self._weigh(chain, situation)
+        for weighed in self.weighed(self.chains(situation), situation):
             if isinstance(weighed, Query):
                 missing[weighed] = None
             else:
@@ -111,24 +145,28 @@ class Planner(Configured):
             sequences=self.sequences(situation),
         )
 
-    def _weigh(self, chain: Chain, situation: Situation) -> Candidate | Query:
-        """The candidate of a chain, or the first query on its way that is not answered."""
-        cost, status = 0, SolveStatus.SOLVED
-        for query in queries_along(chain, situation.built):
-            result = situation.known.get(query)
-            if result is None:
-                return query
-            cost += result.planning_cost
-            status = result.status
-            if not result.solved:
-                break
-        return self.candidate(chain, situation.built, cost, status)
+    def weighed(
+        self, chains: Iterable[Chain], situation: Situation
+    ) -> Iterator[Candidate | Query]:
+        """The candidate of each chain, or the first query on its way that is not answered.
 
-    def candidate(self, chain: Chain, built: Mask, cost: int, status: SolveStatus) -> Candidate:
-        """The candidate of a chain whose solves cost ``cost`` [states] and ended in ``status``."""
-        cells = cells_added(chain, built)
-        value = self.value(cells, cost) if status is SolveStatus.SOLVED else None
-        return Candidate(chain, cells, cost, value, status)
+        What a chain has in common with the one before it is not looked up again.
+        """
+        size = area(situation.built)
+        before: Chain = ()
+        steps = [_Step(situation.built, 0, SolveStatus.SOLVED, None)]
+        for chain in chains:
+            shared = _shared(before, chain)
+            del steps[shared + 1 :]
+            for region in chain[shared:]:
+                steps.append(_step(steps[-1], region, situation.known))
+            before, last = chain, steps[-1]
+            yield last.missing or self._candidate(chain, area(last.built) - size, last)
+
+    def _candidate(self, chain: Chain, cells: int, last: _Step) -> Candidate:
+        solved = last.status is SolveStatus.SOLVED
+        value = self.value(cells, last.cost) if solved else None
+        return Candidate(chain, cells, last.cost, value, last.status)
 
     def plan(self, chain: Chain, situation: Situation) -> Iterator[Subgoal]:
         """The subgoals of a chosen chain, with the plans that fill them."""
@@ -168,21 +206,3 @@ def cells_added(chain: Chain, built: Mask) -> int:
 def value_of(cells: int, planning_cost: int, lam: float) -> float:
     """V = r - lambda * c (paper, equation of the scoping planner) [cells]."""
     return max(cells - lam * planning_cost, -sys.float_info.max)  # a record has no infinity
-
-
-def best(candidates: Sequence[Candidate], seed: int, built: Mask) -> int | None:
-    """Index of a candidate of highest value, uniformly among equals; None if none has a value.
-
-    The draw depends on nothing but the trial's seed and the state.
-    """
-    values = [candidate.value for candidate in candidates if candidate.value is not None]
-    if not values:
-        return None
-    highest = max(values)
-    ties = [index for index, candidate in enumerate(candidates) if candidate.value == highest]
-    return ties[Generator([seed, *mask_words(built)]).below(len(ties))]
-
-
-def first_solved(candidates: Sequence[Candidate]) -> int | None:
-    """Index of the first candidate that is solved; None if there is none."""
-    return next((i for i, candidate in enumerate(candidates) if candidate.is_solved), None)

@@ -7,13 +7,14 @@ the target rows below a height (paper, section "Subgoals").
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar, NamedTuple, Protocol
 
 from blocks_planning.board.geometry import MAX_SIDE, Mask
 from blocks_planning.board.task import Task
 from blocks_planning.families import Registry
 from blocks_planning.settings import Configured, setting
-from blocks_planning.subgoals.rectangles import rectangles
+from blocks_planning.subgoals.rectangles import RectangleLabel, rectangles
 
 MAX_CELLS = MAX_SIDE * MAX_SIDE
 
@@ -108,7 +109,13 @@ class Rectangles(Configured):
     def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
         """See :class:`RegionFamily`. By rising row, column, height and width."""
         found = rectangles(task, built, self.min_cells, self.max_cells)
-        return [Region(Label(*label), cells) for label, cells in found]
+        return [_rectangle(label, cells) for label, cells in found]
+
+
+@lru_cache(maxsize=1 << 15)
+def _rectangle(label: RectangleLabel, cells: Mask) -> Region:
+    """A rectangle as a region, made once."""
+    return Region(Label(*label), cells)
 
 
 REGIONS = Registry('regions', 'blocks_planning.regions', (Rows, Rectangles))

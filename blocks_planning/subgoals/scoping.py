@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from blocks_planning.settings import member, setting
-from blocks_planning.subgoals.aiming import aim_setting, regions_to_aim_at
-from blocks_planning.subgoals.decision import Chain, Situation
+from blocks_planning.subgoals.aiming import aim_setting
+from blocks_planning.subgoals.choosing import AGGREGATES, CHOICES, best, drawn, probabilities
+from blocks_planning.subgoals.decision import Candidate, Chain, Situation
+from blocks_planning.subgoals.lookahead import (
+    MAX_HORIZON,
+    MAX_SEQUENCES,
+    Considered,
+    Lookahead,
+    considered,
+)
 from blocks_planning.subgoals.planner import Planner, value_of
 from blocks_planning.subgoals.regions import REGIONS, RegionFamily
 
@@ -20,7 +28,8 @@ class Scoping(Planner):
     """One subgoal at a time, the one of highest value (paper, section "Visual scoping").
 
     It executes the whole plan of a 'subgoal' (the paper's text and numbers), or only its first
-    'action'.
+    'action'. With a horizon above 1 it weighs sequences of subgoals, and executes the first
+    subgoal of the one that it chooses.
     """
 
     name: ClassVar[str] = 'scoping'
@@ -33,10 +42,55 @@ class Scoping(Planner):
     aim: str = aim_setting()
     regions: RegionFamily = member('rows', REGIONS, 'Regions that are considered as subgoals.')
 
+    horizon: int = setting(
+        1, 'Most subgoals that are looked ahead.', least=1, most=MAX_HORIZON, unit='subgoals'
+    )
+    max_sequences: int = setting(
+        MAX_SEQUENCES,
+        'Most sequences of subgoals that are weighed; of more a sample is drawn.',
+        least=1,
+        most=MAX_SEQUENCES,
+        unit='sequences',
+    )
+    choice: str = setting('best', 'How a candidate is chosen by its value.', choices=CHOICES)
+    temperature: float = setting(
+        1.0,
+        'Of softmax: a candidate of value V counts exp(V / temperature).',
+        above=0,
+        unit='cells',
+    )
+    aggregate: str = setting(
+        'best', 'Of softmax: how sequences with one first subgoal count.', choices=AGGREGATES
+    )
+
     def chains(self, situation: Situation) -> Sequence[Chain]:
-        """Each region alone."""
-        regions = regions_to_aim_at(self.regions, situation, self.aim)
-        return [(region,) for region in regions]
+        """Each region alone, or the sequences of :mod:`.lookahead`."""
+        return self._considered(situation).chains
+
+    def sequences(self, situation: Situation) -> int:
+        """See :class:`Strategy`."""
+        return self._considered(situation).existing
+
+    def _considered(self, situation: Situation) -> Considered:
+        how = Lookahead(self.regions, self.aim, self.horizon, self.max_sequences)
+        return considered(how, situation.task, situation.built, situation.seed)
+
+    def rated(
+        self, candidates: Sequence[Candidate], situation: Situation
+    ) -> tuple[Candidate, ...]:
+        """See :class:`Strategy`. With probabilities if the choice is by softmax."""
+        if self.choice == 'best':
+            return tuple(candidates)
+        chances = probabilities(candidates, self.temperature, self.aggregate)
+        return tuple(
+            replace(candidate, probability=chance)
+            for candidate, chance in zip(candidates, chances, strict=True)
+        )
+
+    def choose(self, candidates: Sequence[Candidate], situation: Situation) -> int | None:
+        """See :class:`Strategy`."""
+        choose = best if self.choice == 'best' else drawn
+        return choose(candidates, situation.seed, situation.built)
 
     def value(self, cells: int, planning_cost: int) -> float | None:
         """V = r - lambda * c [cells]."""

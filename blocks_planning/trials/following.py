@@ -12,8 +12,8 @@ from collections.abc import MutableMapping
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placement
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.search.many import solve_many
 from blocks_planning.search.result import Problem, SolveResult
-from blocks_planning.search.solve import solve
 from blocks_planning.subgoals.decision import Decision, Query, Situation, Subgoal
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.spec import TrialSpec
@@ -22,13 +22,16 @@ from blocks_planning.trials.world import TOO_MANY, status_of
 from blocks_planning.worlds.observation import MAX_OBSERVATIONS, Blocks, Observation, mask_of
 
 
-def follow(spec: TrialSpec, answers: MutableMapping[Query, SolveResult]) -> TrialRecord:
+def follow(
+    spec: TrialSpec, answers: MutableMapping[Query, SolveResult], workers: int = 1
+) -> TrialRecord:
     """Run a trial to its end.
 
     Args:
         spec: the trial.
         answers: what is known of this task, search, seed and budget; new answers are added. The
             record counts each as if it had been searched for again.
+        workers: threads that solve the queries of a decision; 1 where processes run side by side.
 
     Raises:
         ConfigurationError: for a strategy that asks a person, or a world that is observed.
@@ -40,7 +43,7 @@ def follow(spec: TrialSpec, answers: MutableMapping[Query, SolveResult]) -> Tria
     decisions: list[DecisionRecord] = []
     status, reason = board.status(), ''
     while status is TrialStatus.BUILDING:
-        decision = _decide(spec, board.situation(len(decisions), answers), answers)
+        decision = _decide(spec, board.situation(len(decisions), answers), answers, workers)
         start, executed = len(board.observations) - 1, 0
         if decision.chosen is None:
             status = TrialStatus.GAVE_UP
@@ -121,7 +124,10 @@ class _Board:
 
 
 def _decide(
-    spec: TrialSpec, situation: Situation, answers: MutableMapping[Query, SolveResult]
+    spec: TrialSpec,
+    situation: Situation,
+    answers: MutableMapping[Query, SolveResult],
+    workers: int,
 ) -> Decision:
     while True:
         answer = spec.strategy.decide(situation)
@@ -129,6 +135,6 @@ def _decide(
             return answer
         if not answer:
             raise ConfigurationError(f'strategy {spec.strategy.name} waits for a person')
-        for query in answer:
-            problem = Problem(spec.task, *query)
-            answers[query] = solve(problem, spec.search, spec.seed, spec.budget)
+        problems = [Problem(spec.task, *query) for query in answer]
+        results = solve_many(problems, spec.search, spec.seed, spec.budget, workers=workers)
+        answers.update(zip(answer, results, strict=True))

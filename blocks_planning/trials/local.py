@@ -6,8 +6,8 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from blocks_planning.search.many import solve_many
 from blocks_planning.search.result import CancelToken, Problem, SolveStatus
-from blocks_planning.search.solve import solve
 from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials import scribe, searcher, selector, world
 from blocks_planning.trials.messages import (
@@ -22,6 +22,8 @@ from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 
+MOST_AT_ONCE = 1024
+"""Most queries that are solved in one call."""
 _PARTS = (world, selector, searcher, scribe)
 
 
@@ -41,6 +43,7 @@ def run_trial(
             ends with status ``cancelled``.
     """
     cancel = cancel or CancelToken()
+    questions: list[Solve] = []
     memories: list[Any] = [part.Memory() for part in _PARTS]
     messages: deque[Message] = deque([TrialStarted(spec.trial_id, spec)])
     cancelling = False
@@ -50,12 +53,16 @@ def run_trial(
         if observe is not None:
             observe(message)
         if isinstance(message, Solve):
-            messages.append(_answer(spec, message, cancel))
+            questions.append(message)
+            more = bool(messages) and isinstance(messages[0], Solve)
+            if not more or len(questions) == MOST_AT_ONCE:
+                messages.extend(_answers(spec, questions, cancel))
+                questions = []
         for index, part in enumerate(_PARTS):
             memories[index], said = part.step(memories[index], message)
             messages.extend(said)
         if cancel.cancelled and not cancelling:
-            cancelling = True
+            cancelling, questions = True, []
             messages = deque([CancelTrial(spec.trial_id)])
         if not messages and spec.strategy.asks_person and _is_building(memories[-1]):
             messages.append(_next_proposal(spec.trial_id, proposed))
@@ -72,9 +79,12 @@ def _next_proposal(trial_id: str, proposals: Iterator[Proposal]) -> Message:
     return CancelTrial(trial_id) if proposal is None else ProposalMade(trial_id, proposal)
 
 
-def _answer(spec: TrialSpec, question: Solve, cancel: CancelToken) -> Message:
-    problem = Problem(spec.task, *question.query)
-    result = solve(problem, spec.search, spec.seed, spec.budget, cancel)
-    if result.status is SolveStatus.CANCELLED:
-        return CancelTrial(spec.trial_id)
-    return SearchAnswer(spec.trial_id, question.query, result)
+def _answers(spec: TrialSpec, questions: list[Solve], cancel: CancelToken) -> Iterator[Message]:
+    """Solve on all cores; the answers in the order of the questions."""
+    problems = [Problem(spec.task, *question.query) for question in questions]
+    results = solve_many(problems, spec.search, spec.seed, spec.budget, cancel)
+    for question, result in zip(questions, results, strict=True):
+        if result.status is SolveStatus.CANCELLED:
+            yield CancelTrial(spec.trial_id)
+            return
+        yield SearchAnswer(spec.trial_id, question.query, result)

@@ -72,7 +72,7 @@ def observed(
 
 @dataclass(frozen=True)
 class SearchRequest:
-    """The selector asks for the solves of a decision, all in one message."""
+    """The selector asks for solves of a decision, thousands in one message."""
 
     trial_id: str
     queries: tuple[Query, ...]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from blocks_planning.search.result import SolveResult
 from blocks_planning.subgoals.decision import Decision, Query, Situation
 from blocks_planning.subgoals.human import used
 from blocks_planning.subgoals.proposals import (
@@ -16,6 +15,7 @@ from blocks_planning.subgoals.proposals import (
     proposed_at,
     target_of,
 )
+from blocks_planning.trials.answers import Answers
 from blocks_planning.trials.execution import History, SubgoalChosen, history
 from blocks_planning.trials.messages import (
     Message,
@@ -32,6 +32,9 @@ from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.worlds.observation import standing
 
+MOST_IN_REQUEST = 1 << 12
+"""Most queries in one request."""
+
 
 @dataclass(frozen=True)
 class Memory:
@@ -41,15 +44,15 @@ class Memory:
         trial: the trial.
         state: the latest.
         known: answered queries.
-        asked: queries that were sent, answered or not.
+        asked: queries that were sent, answered or not, in order.
         chosen: the subgoal that is being executed.
         proposals: of a person, in the order of their numbers in every state.
     """
 
     trial: TrialStarted | None = None
     state: WorldState | None = None
-    known: Mapping[Query, SolveResult] = field(default_factory=dict)
-    asked: tuple[Query, ...] = ()
+    known: Answers = field(default_factory=Answers)
+    asked: Mapping[Query, None] = field(default_factory=dict)
     chosen: SubgoalChosen | None = None
     proposals: tuple[Proposal, ...] = ()
 
@@ -68,8 +71,10 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
         case WorldState() if state is None or message.sequence > state.sequence:
             return _go_on(replace(memory, state=message), trial.spec, message)
         case SearchAnswer(_, query, result) if state is not None and _is_open(memory, query):
-            known = {**memory.known, query: result}
-            return _go_on(replace(memory, known=known), trial.spec, state)
+            memory = replace(memory, known=memory.known.with_answer(query, result))
+            if len(memory.known) < len(memory.asked):
+                return memory, ()
+            return _go_on(memory, trial.spec, state)
         case ProposalMade(_, proposal) if _is_next(memory, trial.spec, proposal):
             memory = replace(memory, proposals=(*memory.proposals, proposal))
             return (memory, ()) if state is None else _consider(memory, trial, state, proposal)
@@ -199,10 +204,13 @@ def _decided(
 def _ask(
     memory: Memory, state: WorldState, queries: Sequence[Query]
 ) -> tuple[Memory, tuple[Message, ...]]:
-    asked = set(memory.asked)
-    new = tuple(query for query in queries if query not in asked)
-    return replace(memory, asked=memory.asked + new), _request(state.trial_id, new)
+    new = tuple(query for query in queries if query not in memory.asked)
+    asked = {**memory.asked, **dict.fromkeys(new)}
+    return replace(memory, asked=asked), _request(state.trial_id, new)
 
 
 def _request(trial_id: str, queries: tuple[Query, ...]) -> tuple[SearchRequest, ...]:
-    return (SearchRequest(trial_id, queries),) if queries else ()
+    return tuple(
+        SearchRequest(trial_id, queries[start : start + MOST_IN_REQUEST])
+        for start in range(0, len(queries), MOST_IN_REQUEST)
+    )

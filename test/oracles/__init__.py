@@ -10,5 +10,6 @@ imported from the package under test. Only the standard library is used.
 * ``slipping``: success where blocks slip, of the best orders, bfs and random
 * ``statics``: whether loose blocks stand
 * ``exact``: fewest blocks and number of complete arrangements, in two independent ways
+* ``lookahead``: sequences of subgoals, and choice by probability
 * ``planners``: solve (attempts and budget), none, scoping, full
 """

@@ -15,10 +15,10 @@ MOST_OBSERVATIONS = 4096
 """Of a trial. A tower takes 256 placements at most; the rest are orders that were lost."""
 MOST_QUERIES = 1 << 14
 """In a request."""
-MOST_REGIONS = 1 << 12
-"""In a decision."""
-MOST_CANDIDATES = 1 << 15
-"""In a decision: every sequence of rows of the largest board."""
+MOST_REGIONS = 1 << 15
+"""In a decision: a board of 16 x 16 cells has 18 496 rectangles."""
+MOST_CANDIDATES = 100_000
+"""In a decision: the most sequences that scoping weighs; ``full`` has 32 768 at most."""
 
 
 class MessageError(InvalidInput):
