@@ -1,7 +1,7 @@
 """Optional dependencies: an import that fails names the extra of the package that would help.
 
-The planning core and the nodes need few packages. What only experiments, figures or the page
-need is an extra of ``setup.py``, and is imported inside :func:`extra`.
+The planning core and the nodes need few packages. What only experiments, figures, the page
+or the robot need is an extra of ``setup.py``, and is imported inside :func:`extra`.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ from contextlib import contextmanager
 
 from blocks_planning.errors import ConfigurationError
 
-EXTRAS = ('experiments', 'figures', 'page')
-"""As in ``extras_require`` of ``setup.py``; the extra ``all`` is these three."""
+EXTRAS = ('experiments', 'figures', 'page', 'robot')
+"""As in ``extras_require`` of ``setup.py``; the extra ``all`` is these without
+``robot``, which is heavy and only simulates a body."""
 
 
 class MissingExtra(ConfigurationError):

@@ -19,7 +19,7 @@ def resource_directories(kind: str) -> Iterator[Path]:
     ``AMENT_PREFIX_PATH`` (a ROS workspace), that before the folder that this package was installed
     into (also with ``pip install --user`` or ``--target``), and that before ``sys.prefix``.
     """
-    prefixes = [
+    prefixes: list[str | Path] = [
         *filter(None, os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)),
         *_PACKAGE.parents[:_PREFIX_LEVELS],
         sys.prefix,

@@ -1,10 +1,20 @@
-"""The whole graph, for ROS installations: ros2 launch blocks_planning trial.launch.py script:=..."""
+"""The whole graph, for ROS installations: ros2 launch blocks_planning trial.launch.py script:=...
 
-from launch.actions import DeclareLaunchArgument, EmitEvent, RegisterEventHandler
-from launch.conditions import IfCondition
+All arguments are evaluated and checked before the first node starts, and each is a text whatever
+it looks like. The launch ends when the orchestrator has run its script; it fails if that failed.
+"""
+
+from pathlib import Path
+
+from launch.actions import (
+    DeclareLaunchArgument,
+    EmitEvent,
+    OpaqueFunction,
+    RegisterEventHandler,
+)
 from launch.event_handlers import OnProcessExit
 from launch.events import Shutdown
-from launch.substitutions import LaunchConfiguration, PythonExpression
+from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
@@ -16,72 +26,94 @@ ARGUMENTS = {
     'out_dir': ('trials', 'folder of trials.jsonl'),
     'bag_dir': ('', 'folder of a bag to record everything in; empty: no bag'),
     'namespace': ('', 'namespace of all nodes'),
+    'peer_timeout_s': ('30.0', 'how long a node may be missing before its trial ends [s]'),
     'markers': ('false', 'true: show the towers to RViz and Foxglove'),
     'view': ('false', 'true: serve the page; trial_view says at which address'),
 }
-RESPAWNED = ('world', 'subgoal_selector', 'action_searcher')
+NODES = ['world', 'subgoal_selector', 'action_searcher']
+FLAGS = {'true': True, 'false': False}
 
 
-def node(name: str, **options: object) -> Node:
-    """A node of this package, in the namespace that was asked for."""
-    return Node(
-        package='blocks_planning',
-        executable=name,
-        name=name,
-        namespace=LaunchConfiguration('namespace'),
-        output='screen',
-        **options,
-    )
+def flag(values, name):
+    """Whether an argument is true."""
+    if values[name] not in FLAGS:
+        raise RuntimeError(f'{name} must be true or false, got {values[name]!r}')
+    return FLAGS[values[name]]
 
 
-def text(argument: str) -> ParameterValue:
-    """The value of an argument, as a text whatever it looks like."""
-    return ParameterValue(LaunchConfiguration(argument), value_type=str)
+def seconds(values, name):
+    """An argument as a positive number."""
+    try:
+        number = float(values[name])
+    except ValueError:
+        number = 0.0
+    if not 0 < number < float('inf'):
+        raise RuntimeError(f'{name} must be a number of seconds above 0, got {values[name]!r}')
+    return number
 
 
-def generate_launch_description() -> LaunchDescription:
-    """Start every node; end when the orchestrator has run its script."""
-    has_bag = PythonExpression(["'", LaunchConfiguration('bag_dir'), "' != ''"])
-    peers = PythonExpression([str(list(RESPAWNED)), " + ['bag_recorder'] * ", has_bag])
-    journal = [LaunchConfiguration('out_dir'), '/journal']
-    orchestrator = node(
-        'trial_orchestrator',
-        parameters=[
-            {
-                'script': text('script'),
-                'participant': text('participant'),
-                'out_dir': text('out_dir'),
-                'wait_for': peers,
-            }
-        ],
-    )
-    return LaunchDescription(
-        [
-            *(
-                DeclareLaunchArgument(name, default_value=default, description=description)
-                for name, (default, description) in ARGUMENTS.items()
-            ),
-            *(node(name, respawn=True) for name in RESPAWNED if name != 'world'),
-            node('world', respawn=True, parameters=[{'journal_dir': journal}]),
-            node(
-                'bag_recorder',
-                parameters=[{'bag_dir': text('bag_dir')}],
-                condition=IfCondition(has_bag),
-            ),
-            node(
-                'marker_publisher',
-                respawn=True,
-                condition=IfCondition(LaunchConfiguration('markers')),
-            ),
-            node(
-                'trial_view',
-                respawn=True,
-                parameters=[{'script': text('script'), 'participant': text('participant')}],
-                condition=IfCondition(LaunchConfiguration('view')),
-            ),
-            orchestrator,
-            RegisterEventHandler(
-                OnProcessExit(target_action=orchestrator, on_exit=[EmitEvent(event=Shutdown())])
-            ),
-        ]
-    )
+def parameters_of(values):
+    """The nodes to start, each with its parameters.
+
+    Raises:
+        RuntimeError: for an argument that cannot be used; naming it and its value.
+    """
+    if not values['out_dir']:
+        raise RuntimeError("out_dir must be the name of a folder, got ''")
+    session = {name: values[name] for name in ('script', 'participant')}
+    found = {name: {} for name in NODES}
+    found['world']['journal_dir'] = str(Path(values['out_dir'], 'journal'))
+    if values['bag_dir']:
+        found['bag_recorder'] = {'bag_dir': values['bag_dir']}
+    if flag(values, 'markers'):
+        found['marker_publisher'] = {}
+    if flag(values, 'view'):
+        found['trial_view'] = session
+    found['trial_orchestrator'] = {
+        **session,
+        'out_dir': values['out_dir'],
+        'wait_for': list(found),
+        'peer_timeout_s': seconds(values, 'peer_timeout_s'),
+    }
+    return found
+
+
+def start(context):
+    """Start every node, with arguments that have been checked."""
+    values = {name: LaunchConfiguration(name).perform(context) for name in ARGUMENTS}
+    actions = []
+    for name, parameters in parameters_of(values).items():
+        node = Node(
+            package='blocks_planning',
+            executable=name,
+            name=name,
+            namespace=values['namespace'],
+            output='screen',
+            respawn=name not in ('trial_orchestrator', 'bag_recorder'),
+            respawn_delay=0.5,
+            parameters=[{key: typed(value) for key, value in parameters.items()}],
+        )
+        actions.append(node)
+    ended = OnProcessExit(target_action=actions[-1], on_exit=after_orchestrator)
+    return [*actions, RegisterEventHandler(ended)]
+
+
+def typed(value):
+    """A parameter as it is: a text stays a text, also one that reads like a number."""
+    return ParameterValue(value, value_type=str) if isinstance(value, str) else value
+
+
+def after_orchestrator(event, _):
+    """End the launch; with an error, so that it fails, if the orchestrator failed."""
+    if event.returncode:
+        raise RuntimeError(f'trial_orchestrator ended with exit code {event.returncode}')
+    return [EmitEvent(event=Shutdown(reason='the script is done'))]
+
+
+def generate_launch_description():
+    """The arguments, and what is done with them."""
+    declared = [
+        DeclareLaunchArgument(name, default_value=default, description=description)
+        for name, (default, description) in ARGUMENTS.items()
+    ]
+    return LaunchDescription([*declared, OpaqueFunction(function=start)])

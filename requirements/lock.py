@@ -23,12 +23,14 @@ LOCKS = {
     'lock-uv.txt': ('uv',),
     'lock.txt': ('runtime', 'figures', 'ros', 'build'),
     'lock-development.txt': ('experiments', 'page', 'development'),
+    'lock-robot.txt': ('robot',),
 }
 """The lists behind each lock. A package is in the first lock that needs it."""
 HEADERS = {
     'lock-uv.txt': 'What installs the other locks.',
     'lock.txt': 'Every package that `make demo` needs, direct and indirect, at one exact version.',
     'lock-development.txt': 'What experiments, the page and development need beside lock.txt.',
+    'lock-robot.txt': 'What the simulated robot needs beside the others.',
 }
 WRITTEN = 'Written by lock.py from the *.in files beside it: edit those, then run it again.'
 OPTIONS = [

@@ -25,6 +25,7 @@ NAMES: dict[str, tuple[str, str | None]] = {
     'matplotlib': ('matplotlib', 'python3-matplotlib'),
     # rosdep knows it only as a dependency of another.
     'mcap': ('mcap', 'mcap-ros2-support'),
+    'mujoco': ('mujoco', None),
     'numba': ('numba', 'python3-numba'),
     'numpy': ('numpy', 'python3-numpy'),
     'pandas': ('pandas', 'python3-pandas'),

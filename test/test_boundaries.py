@@ -28,6 +28,7 @@ LAYERS = [
     {'view', 'experiments', 'analysis', 'robot'},
     {'ros'},
     {'cli'},
+    {'testing'},
     {'__main__'},
 ]
 LEVEL = {part: level for level, parts in enumerate(LAYERS) for part in parts}

@@ -57,7 +57,7 @@ def test_the_demo_is_spared_what_only_development_needs() -> None:
             assert set(pins(path)) & set(demo) == set(), path.name
 
 
-@pytest.mark.parametrize('tier', ['runtime', 'experiments', 'figures', 'page'])
+@pytest.mark.parametrize('tier', ['runtime', 'experiments', 'figures', 'page', 'robot'])
 def test_what_setup_asks_for_is_what_is_listed(tier: str) -> None:
     arguments = setup_arguments()
     asked = arguments['extras_require'].get(tier, arguments['install_requires'])

@@ -110,7 +110,8 @@ def test_imported_module_is_declared_and_pinned(arguments: dict[str, Any], modul
         assert key in declared_in_manifest('exec_depend') | declared_in_manifest('depend')
     if module in NAMES:
         extras = arguments['extras_require']
-        assert distribution in map(canonical, [*arguments['install_requires'], *extras['all']])
+        tiers = [*arguments['install_requires'], *extras['all'], *extras['robot']]
+        assert distribution in map(canonical, tiers)
     if module not in BUILT_HERE:
         assert distribution in pins(*LOCKS)
 

@@ -39,7 +39,7 @@ def guards(source: Source) -> Iterator[tuple[str, str | None]]:
     def visit(node: ast.AST, guard: str | None) -> Iterator[tuple[str, str | None]]:
         match node:
             case ast.With(items=[ast.withitem(ast.Call(ast.Name('extra'), [ast.Constant(name)]))]):
-                guard = name
+                guard = str(name)
             case ast.Import(names):
                 yield from ((alias.name.partition('.')[0], guard) for alias in names)
             case ast.ImportFrom(str(module), _, 0):
@@ -92,7 +92,9 @@ def first_tier() -> set[str]:
 def test_extras_are_those_of_setup() -> None:
     extras = setup_arguments()['extras_require']
     assert set(EXTRAS) == set(extras) - {'all', 'test'}
-    assert sorted(extras['all']) == sorted(name for key in EXTRAS for name in extras[key])
+    assert sorted(extras['all']) == sorted(
+        name for key in EXTRAS if key != 'robot' for name in extras[key]
+    )
     assert set(EXTRA_OF.values()) == set(EXTRAS)
 
 
@@ -169,8 +171,7 @@ sys.argv = ['blocks-planning', 'solve', 'cogsci2021/9', '--json']
 main()
 """
     done = run_without(outside_of(first_tier()), code)
-    assert done.stderr == ''
-    assert '"status":"success"' in done.stdout
+    assert '"status":"success"' in done.stdout, done.stderr
 
 
 def test_every_node_can_be_imported_with_the_first_tier_alone() -> None:

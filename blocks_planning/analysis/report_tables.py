@@ -20,7 +20,7 @@ _COMMITS = ('subgoal', 'action')
 def table_1_rows(presets: dict[str, Any]) -> list[dict[str, Any]]:
     """The rows of Table 1 with their names and the paper's numbers, in the paper's order."""
     claims = {str(claim.path): claim for claim in the_paper().claims}
-    rows = []
+    rows: list[dict[str, Any]] = []
     for preset, results in presets.items():
         for row in results['table1']:
             if row['search'] == 'random' and any(there['search'] == 'random' for there in rows):
@@ -66,7 +66,7 @@ def switch_rows(trials: pd.DataFrame) -> list[dict[str, Any]]:
     """
     scoping = trials[(trials['strategy'] == 'scoping') & (trials['budget'] > 0)]
     seeds = sorted(trials['seed'].unique())
-    rows = []
+    rows: list[dict[str, Any]] = []
     for search in SEARCH_NAMES:
         here = scoping[(scoping['search'] == search).to_numpy(bool)]
         parts = {

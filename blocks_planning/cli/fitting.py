@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from blocks_planning.cli.sweeping import out_option, progress
+from blocks_planning.cli.progress import bar
+from blocks_planning.cli.sweeping import out_option
 from blocks_planning.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -52,9 +53,9 @@ def fit(records: tuple[Path, ...], out: Path, names: tuple[str, ...], intervals:
 
     models = [parse_model(name) for name in dict.fromkeys(names)]
     points = _read_points(records)
-    with progress('Choices') as report:
+    with bar('Choices') as report:
         sets = Makers().choice_sets(points, models, report)
-    with progress('Fits') as report:
+    with bar('Fits') as report:
         fits, parameters = compare_models(sets, models, intervals, report)
     tables = {'fits': fits, 'parameters': parameters, 'choices': choice_rows(points)}
     for name, rows in tables.items():

@@ -94,7 +94,9 @@ def parse_model(text: str) -> Model:
     rest = rest.removesuffix('-no-progress')
     regions, _, ahead = rest.partition('-')
     if regions in family_names() and ahead in ('', '2', '3'):
-        return Model(regions, int(ahead or 1), cost, progress)
+        found = Model(regions, int(ahead or 1), cost, progress)
+        if found.name == text:
+            return found
     raise ConfigurationError(
         f'model must be {RANDOM}, or a region family ({", ".join(family_names())}), then -2 or -3 for '
         f'the horizon, then -no-cost or -no-progress, got {shown(text)}'

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from blocks_planning.board.blocks import Block, Placement
 from blocks_planning.robot import moving
 from blocks_planning.robot.arm import closed
+from blocks_planning.robot.feeder import Feeder
 from blocks_planning.robot.lowering import Descent, descend
 from blocks_planning.robot.memory import Memory
 from blocks_planning.robot.phases import ACT, BOUNDS_S, LATE, Phase, Progress, Reason, Report
@@ -20,15 +21,17 @@ class Behaviour:
         memory: where the act is.
     """
 
-    def __init__(self, simulation: Simulation, slack: float) -> None:
+    def __init__(self, simulation: Simulation, feeder: Feeder, slack: float) -> None:
         """An arm at rest beside the board.
 
         Args:
             simulation: what it moves in.
+            feeder: presents what is ordered.
             slack: how far the height of the tower may differ from what was seen [m].
         """
         self.simulation = simulation
         self.sizes = simulation.sizes
+        self._feeder = feeder
         self.memory = Memory()
         self._slack = 0.3 * self.sizes.cell + slack
         arm = self.memory.arm
@@ -48,27 +51,28 @@ class Behaviour:
 
     # --- orders -----------------------------------------------------------------------------
 
-    def begin(self, placement: Placement, number: int, row: int | None, top: float) -> None:
-        """Begin an act.
+    def begin(self, placement: Placement, row: int | None, top: float) -> None:
+        """Begin an act; what is still held from an earlier one is brought back first.
 
         Args:
             placement: what is ordered.
-            number: of the block that the feeder presents.
             row: on which it is expected to come to rest; None: nowhere on the board.
             top: highest point of everything that stands [m].
         """
         old, now, sizes = self.memory, self.simulation.time, self.sizes
-        height = placement.block.height * sizes.cell
-        below = max(height - sizes.below_top, sizes.pad[2])
+        is_holding = self.is_holding
+        number = old.number if is_holding else self._feeder.present(placement.block)
         self.memory = memory = Memory(placement, number, began=now, entered=now, arm=old.arm)
-        memory.travel = max(top, height) + sizes.clearance + below
+        height = placement.block.height * sizes.cell
+        hanging = max(height, self._held_height) - sizes.below_top
+        memory.travel = max(top, height) + sizes.clearance + max(hanging, sizes.pad[2])
         memory.landing = (row or 0) * sizes.cell + height - sizes.below_top
-        memory.phase = Phase.BRING_BACK if self.is_holding else Phase.APPROACH
+        memory.phase = Phase.BRING_BACK if is_holding else Phase.APPROACH
         if row is None:
             block, column = placement
-            self._fail(
-                Reason.OUT_OF_REACH, f'block {block} in column {column} would not end on the board'
-            )
+            memory.failed, memory.reason = Phase.APPROACH, Reason.OUT_OF_REACH
+            memory.text = f'block {block} in column {column} would not end on the board'
+            memory.phase = Phase.BRING_BACK if is_holding else Phase.RETREAT
 
     def cancel(self) -> None:
         """Stop the arm; what it holds it goes on holding."""
@@ -230,15 +234,19 @@ class Behaviour:
 
     def _bring_back(self) -> Phase | None:
         """Carry a block back; then go on with the order, or retreat if it has failed."""
-        arm = self.memory.arm
-        if self.is_holding and not self._is_above_feeder():
+        memory = self.memory
+        if self.is_holding:
+            # Let it fall a little rather than push it into the table.
+            low = self._held_height - self.sizes.below_top + 0.1 * self.sizes.cell
+            if not self._is_above_feeder() or not self._go(z=low):
+                return None
+        memory.arm.grip_towards(0.0)
+        if memory.arm.grip > 0:
             return None
-        if self.is_holding and not self._go(z=self._grasp_z + self.sizes.clearance):
-            return None
-        arm.grip_towards(0.0)
-        if arm.grip > 0:
-            return None
-        return Phase.APPROACH if self.memory.reason is None else Phase.RETREAT
+        if memory.reason is not None:
+            return Phase.RETREAT
+        memory.number = self._feeder.present(self._block)
+        return Phase.APPROACH
 
     # --- what phases have in common ---------------------------------------------------------
 
@@ -246,6 +254,11 @@ class Behaviour:
     def _block(self) -> Block:
         assert self.memory.placement is not None
         return self.memory.placement.block
+
+    @property
+    def _held_height(self) -> float:
+        """Of the block that was presented last [m]."""
+        return self.simulation.body(self.memory.number).block.height * self.sizes.cell
 
     @property
     def _feeder_x(self) -> float:

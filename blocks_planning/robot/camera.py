@@ -16,8 +16,8 @@ from blocks_planning.robot.rendering import Painter, Pixels
 from blocks_planning.robot.scene import FRONT_CAMERA, PIXELS_PER_CELL, Body
 from blocks_planning.robot.simulation import Simulation
 
-MOST_OFF = 24.0
-"""How far a pixel may be from the colour of a block, in levels."""
+MOST_OFF = 20.0
+"""How far a pixel may be from the colour of a block, in levels; the nearest two are 21 apart."""
 
 
 class Camera:

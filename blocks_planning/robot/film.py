@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from PIL import Image
-
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.extras import extra
 from blocks_planning.robot.phases import Progress
 from blocks_planning.robot.rendering import Painter
 from blocks_planning.robot.robot import Robot
 from blocks_planning.robot.scene import FILM_CAMERA
+
+with extra('figures'):
+    from PIL import Image
 
 WIDTH, HEIGHT = 440, 400
 """Of a frame without what stands beside it [pixels]."""

@@ -7,13 +7,16 @@ import os
 from importlib import import_module
 from typing import Any, TypeAlias
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.extras import extra
 from blocks_planning.robot.scene import FILM_CAMERA, FILM_LIGHT
 from blocks_planning.robot.simulation import Simulation
+
+with extra('robot'):
+    import mujoco
 
 Pixels: TypeAlias = NDArray[np.uint8]
 """Height x width x 3, top row first."""

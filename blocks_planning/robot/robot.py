@@ -15,9 +15,10 @@ from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placement
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import InvalidInput
-from blocks_planning.robot import noise, saving
+from blocks_planning.robot import saving
 from blocks_planning.robot.behaviour import Behaviour
 from blocks_planning.robot.camera import Camera
+from blocks_planning.robot.feeder import Feeder
 from blocks_planning.robot.fitting import Perceived, fit
 from blocks_planning.robot.phases import Progress, Report
 from blocks_planning.robot.scene import TIMESTEP, Body
@@ -61,7 +62,9 @@ class Robot:
         self.seed = seed
         self.seen = Perceived()
         self.simulation = Simulation(Sizes.of(board, settings), settings)
-        self._behaviour = Behaviour(self.simulation, NOISE_TOLERANCE * settings.pose_noise_m)
+        self._behaviour = Behaviour(
+            self.simulation, Feeder(self.simulation, seed), NOISE_TOLERANCE * settings.pose_noise_m
+        )
         self._camera = Camera(self.simulation) if settings.perception == CAMERA else None
         self._perceptions = 0
 
@@ -79,11 +82,9 @@ class Robot:
             raise InvalidInput(
                 'the robot carries out another order: wait for its report, or cancel it first'
             )
-        self._clear_feeder()
         landed = rules.drop(self.board, self.seen.built(self.board), placement)
-        number = self._present(placement)
         row = None if landed is None else landed.row
-        self._behaviour.begin(placement, number, row, self._highest())
+        self._behaviour.begin(placement, row, self._highest())
 
     def step(self) -> Progress:
         """Let ``TICK`` pass; the arm moves on if there is an order."""
@@ -121,27 +122,14 @@ class Robot:
         return not self._behaviour.memory.arm.is_at_rest
 
     @property
+    def held(self) -> int | None:
+        """Number of the block between the fingers; None: none."""
+        return self._behaviour.memory.number if self._behaviour.is_holding else None
+
+    @property
     def time(self) -> float:
         """Time of the simulation [s]."""
         return self.simulation.time
-
-    def _clear_feeder(self) -> None:
-        """Take away what was not placed, except from the fingers."""
-        held = self._held()
-        self.simulation.remove(
-            body.number
-            for body in self.simulation.free
-            if self.simulation.is_at_feeder(body.number) and body.number != held
-        )
-
-    def _present(self, placement: Placement) -> int:
-        spread = self.settings.grip_noise_m
-        [off] = noise.normal(self.seed, 'grip', self.simulation.next_number)
-        x = self.simulation.sizes.feeder(placement.block)
-        return self.simulation.add(placement.block, x + spread * off)
-
-    def _held(self) -> int | None:
-        return self._behaviour.memory.number if self._behaviour.is_holding else None
 
     def _highest(self) -> float:
         rows = (placed.row + placed.height for placed in self.seen.placed)
@@ -162,7 +150,7 @@ class Robot:
 
     def _looked_at(self) -> list[Body]:
         """Every block but those at the feeder and in the fingers."""
-        held = self._held()
+        held = self.held
         return [
             body
             for body in self.simulation.bodies

@@ -10,14 +10,17 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any, TypeAlias
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from blocks_planning.board.blocks import Block
+from blocks_planning.extras import extra
 from blocks_planning.robot.scene import DAMPING, JOINTS, STIFFNESS, Body, Pose, model_text
 from blocks_planning.robot.settings import RobotSettings
 from blocks_planning.robot.sizes import Sizes
+
+with extra('robot'):
+    import mujoco
 
 Floats: TypeAlias = NDArray[np.float64]
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION

@@ -160,10 +160,13 @@ class Solver:
 def _result(batch: Batch, index: int, problem: Problem) -> SolveResult:
     status = _STATUS[int(batch.outcome[index])]
     solved = status is SolveStatus.SOLVED
-    path = batch.path[index, : batch.length[index]].tolist() if solved else []
+    was_tried = solved or status is SolveStatus.BUDGET_EXHAUSTED
+    path = batch.path[index, : batch.length[index]].tolist() if was_tried else []
+    placements = placements_of(problem, path)
     return SolveResult(
         status=status,
-        placements=placements_of(problem, path),
+        placements=placements if solved else (),
+        last_attempt=() if solved else placements,
         solution_cost=int(batch.solution_cost[index]) if solved else 0,
         planning_cost=int(batch.planning_cost[index]),
         attempts=int(batch.attempts[index]),

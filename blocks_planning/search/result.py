@@ -62,6 +62,7 @@ class SolveResult:
         solution_cost: states evaluated in the attempt that succeeded; 0 if none did.
         planning_cost: states evaluated in all attempts.
         attempts: number of attempts made; 0 where no search was needed.
+        last_attempt: placements of the last attempt, where none succeeded: as far as it came.
     """
 
     status: SolveStatus
@@ -69,6 +70,12 @@ class SolveResult:
     solution_cost: int = 0
     planning_cost: int = 0
     attempts: int = 0
+    last_attempt: tuple[Placed, ...] = ()
+
+    @property
+    def plan(self) -> tuple[Placed, ...]:
+        """What there is to carry out: the way to the filled region, else the last attempt."""
+        return self.placements if self.solved else self.last_attempt
 
     @property
     def solved(self) -> bool:

@@ -251,7 +251,7 @@ def _plan(
     )
     plans.wanted[reachable.number(reachable.problem.built)] = 1
     rising = np.ascontiguousarray(reachable.falling[::-1])
-    memory = lookahead.make_search(tables, search.depth)
+    memory = lookahead.make_search(tables, search.depth, search.dead_ends_last)
     done = written = 0
     while done < len(rising):
         report('plans', done, len(rising))

@@ -89,9 +89,9 @@ class Subgoal:
         region: which cells to fill, and how they were chosen.
         target: all cells that are filled when the subgoal is reached.
         execute: number of placements to carry out before the next decision.
-        placements: the whole plan that fills the region.
+        placements: the whole plan that fills the region; of a solve that failed, its last attempt.
         planning_cost: of its solve [states].
-        solution_cost: of the attempt that succeeded [states].
+        solution_cost: of the attempt that succeeded [states]; 0 if none did.
         attempts: of its solve.
     """
 
@@ -111,8 +111,8 @@ class Decision:
     Attributes:
         built: the state.
         candidates: every chain that was considered, in the order in which ties are drawn.
-        chosen: index of the chosen candidate; None if no candidate is solved and the planner
-            gives up.
+        chosen: index of the chosen candidate; None if the planner gives up, because no candidate
+            is solved.
         subgoals: to execute, one after the other; empty if the planner gives up.
         subgoal_planning_cost: of considering all candidates [states].
         sequences: number of chains that exist; more than the candidates if they are a sample.

@@ -6,10 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from blocks_planning.settings import setting
 from blocks_planning.subgoals.aiming import aim_setting, regions_to_aim_at
 from blocks_planning.subgoals.decision import Candidate, Chain, Situation
-from blocks_planning.subgoals.planner import Planner, first_solved
+from blocks_planning.subgoals.planner import Planner, first_solved, queries_along
 from blocks_planning.subgoals.regions import Rows
+
+FAILURES = ('execute', 'give_up')
 
 
 @dataclass(frozen=True)
@@ -18,6 +21,11 @@ class NoSubgoals(Planner):
 
     name: ClassVar[str] = 'none'
     aim: str = aim_setting()
+    failure: str = setting(
+        'execute',
+        'Whether the last attempt of a solve that fails is executed.',
+        choices=FAILURES,
+    )
 
     def chains(self, situation: Situation) -> Sequence[Chain]:
         """The whole silhouette."""
@@ -29,8 +37,18 @@ class NoSubgoals(Planner):
         return None
 
     def choose(self, candidates: Sequence[Candidate], situation: Situation) -> int | None:
-        """The one candidate, if it is solved."""
-        return first_solved(candidates)
+        """The one candidate; if it is not solved, its last attempt is executed.
+
+        The paper ends a trial when no further block can be placed.
+        """
+        if self.failure == 'give_up':
+            return first_solved(candidates)
+        for chain in (candidate.regions for candidate in candidates):
+            (query,) = queries_along(chain, situation.built)
+            result = situation.known.get(query)
+            if result is not None and result.plan:
+                return 0
+        return None
 
     def considered(self, candidates: Sequence[Candidate]) -> int:
         """0: the solve is action planning."""

@@ -138,8 +138,8 @@ class Planner(Configured):
             yield Subgoal(
                 region=region,
                 target=query.target,
-                execute=self.execute(len(result.placements)),
-                placements=result.placements,
+                execute=self.execute(len(result.plan)),
+                placements=result.plan,
                 planning_cost=result.planning_cost,
                 solution_cost=result.solution_cost,
                 attempts=result.attempts,

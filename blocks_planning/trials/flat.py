@@ -1,8 +1,8 @@
 """Every setting of every family, as names in one flat list.
 
 Command-line options and columns of tables are flat: they have no room for "the lambda of the
-strategy". A setting's flat name is its own name; if two families use that name, it is preceded by
-the family's.
+strategy". A setting's flat name is its own name. If another family or another column of the table
+of trials has that name, it is preceded by the family's, such as ``world_blocks``.
 """
 
 from __future__ import annotations
@@ -13,7 +13,18 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from blocks_planning.settings import Setting, Value, all_settings, settings_of
+from blocks_planning.trials.record import SUMMARY_KEYS
 from blocks_planning.trials.spec import FAMILIES, TrialSpec
+
+RESERVED = frozenset(
+    [
+        *FAMILIES,
+        *('trial_id', 'experiment', 'stimulus', 'seed', 'seeds', 'budget', 'status', 'error'),
+        *('library', 'reason'),
+        *SUMMARY_KEYS,
+    ]
+)
+"""Names of other columns and options."""
 
 
 @dataclass
@@ -70,7 +81,7 @@ def flat_settings(wanted: Callable[[type[Any]], bool] | None = None) -> list[Fla
         found.setdefault(place, FlatSetting(one.name, family, one.name)).members[member] = one
     families_with = Counter(key for _, key in found)
     for flat in found.values():
-        if families_with[flat.key] > 1 or flat.key in FAMILIES:
+        if families_with[flat.key] > 1 or flat.key in RESERVED:
             flat.name = f'{flat.family}_{flat.key}'
     return list(found.values())
 

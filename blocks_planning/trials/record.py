@@ -31,6 +31,12 @@ from blocks_planning.worlds.observation import (
 
 FORMAT = 'blocks_planning/trial-record'
 VERSION = 2
+SUMMARY_KEYS = (
+    *('blocks', 'orders', 'surprises', 'subgoals'),
+    *('action_planning_cost', 'subgoal_planning_cost', 'solution_cost'),
+    *Measures._fields,
+)
+"""The keys of :meth:`TrialRecord.summary`."""
 
 
 @dataclass(frozen=True)

@@ -100,7 +100,7 @@ def _act(memory: Memory, only_for: Query | None = None) -> tuple[Memory, tuple[M
         return memory, ()
     if query not in memory.known:
         return _answer(memory, trial.trial_id, (query,))
-    plan = memory.known[query].placements
+    plan = memory.known[query].plan
     said: tuple[Message, ...] = ()
     if memory.planned != chosen:
         execute = chosen.subgoal.execute

@@ -32,6 +32,8 @@ from blocks_planning.worlds.observation import Observation
 _FOR_ALL = ('lambda', 'commit')
 """Settings that stand in every record, null where the strategy does not have them."""
 _FOR_PERSONS = ('participant', 'costs')
+DIFFERENT_NOW = {'failure': 'give_up'}
+"""Settings whose default is not what version 1 did."""
 _OF_SEARCHES = ('depth', 'iterations', 'divisor', 'execute')
 
 
@@ -55,10 +57,11 @@ def _spec(fields: Fields) -> TrialSpec:
     known = setting_names(STRATEGIES.find(name))
     keys = [key for key in _FOR_ALL if key in known or fields.get(key) is not None]
     keys += [key for key in _FOR_PERSONS if key in known]
+    now = {key: value for key, value in DIFFERENT_NOW.items() if key in known}
     return TrialSpec(
         stimulus=fields.get('stimulus', str),
         task=read_task(fields),
-        strategy=STRATEGIES.make(name, {key: fields.get(key) for key in keys}),
+        strategy=STRATEGIES.make(name, {**{key: fields.get(key) for key in keys}, **now}),
         search=SEARCHES.make(fields.get('search', str), fields.get('search_settings', dict)),
         seed=fields.get('seed', int),
         budget=fields.get('budget', int),

@@ -40,11 +40,11 @@ def compact_text(scene: Scene, signs: Signs = palette.UNICODE) -> Text:
     """
     board = scene.task.board
     fills = _fills(scene)
-    goal = None if scene.subgoal is None else scene.subgoal.height
+    goal = scene.top
     text = Text(no_wrap=True, overflow='crop')
     for lower in reversed(range(0, board.height, 2)):
         upper = min(lower + 1, board.height - 1)
-        style = Style(bold=goal is not None and lower < goal <= lower + 2)
+        style = Style(bold=lower < goal <= lower + 2)
         text.append(f'{upper + 1:>{MARGIN - 1}} ', style)
         for column in range(board.width):
             cells = (column, lower + 1), (column, lower)

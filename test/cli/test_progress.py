@@ -6,6 +6,7 @@ import io
 import re
 import threading
 from collections.abc import Callable
+from functools import partial
 
 import pytest
 from rich.console import Console
@@ -48,7 +49,7 @@ def lines_of(console: Console, clock: Clock, until_s: int) -> list[str]:
     shown = Progress(console)
     for second in range(until_s + 1):
         clock.now_s = 100.0 + second
-        shown.show(lambda second=second: f'after {second}')
+        shown.show(partial('after {}'.format, second))
     return text_of(console).splitlines()
 
 
@@ -66,7 +67,7 @@ def test_a_terminal_sees_nothing_for_two_seconds_and_then_one_line(clock: Clock)
     assert text_of(console) == ''
     for step in range(3):
         clock.now_s += 0.2
-        shown.show(lambda step=step: f'step {step}')
+        shown.show(partial('step {}'.format, step))
     shown.show(lambda: 'too soon')
     shown.hide()
     words = re.findall(r'step \d|early|too soon', text_of(console))
@@ -100,7 +101,7 @@ def until_cancelled(cancel: CancelToken) -> str:
 
 
 def test_a_limit_of_one_tower_does_not_end_the_others() -> None:
-    jobs = [Job('a', at_once(1)), Job('b', too_large), Job('c', at_once(3))]
+    jobs: list[Job[object]] = [Job('a', at_once(1)), Job('b', too_large), Job('c', at_once(3))]
     outcomes = list(each('work', jobs, 3, progress=Progress(a_log())))
     assert [outcome[:3] for outcome in outcomes] == [
         ('a', 1, ''),
@@ -110,7 +111,11 @@ def test_a_limit_of_one_tower_does_not_end_the_others() -> None:
 
 
 def test_the_time_limit_holds_for_each_tower() -> None:
-    jobs = [Job('a', until_cancelled), Job('b', at_once(2)), Job('c', until_cancelled)]
+    jobs: list[Job[object]] = [
+        Job('a', until_cancelled),
+        Job('b', at_once(2)),
+        Job('c', until_cancelled),
+    ]
     outcomes = list(each('work', jobs, 3, 0.01, Progress(a_log())))
     problem = 'not finished within the time limit of 0.01 s'
     assert [outcome[:3] for outcome in outcomes] == [

@@ -44,7 +44,7 @@ def test_searcher_leaves_a_long_search_when_it_is_told_to(graph: Graph, tmp_path
         )
         before = _worked_s(process.pid)
         peer.say(TrialStarted(trial.trial_id, trial))
-        peer.say(SearchRequest(trial.trial_id, Query(0, trial.task.silhouette)))
+        peer.say(SearchRequest(trial.trial_id, (Query(0, trial.task.silhouette),)))
         graph.spin_until(lambda: _worked_s(process.pid) - before > 0.5)
         began = time.monotonic()
         process.signal(signal.SIGTERM)

@@ -53,7 +53,7 @@ def test_log_likelihoods_are_those_of_the_twin(maker: MadeUp, name: str) -> None
     np.testing.assert_allclose(found, expected, rtol=1e-9)
     # Each kind of choice was among them.
     assert choices.foreign > 5
-    assert choices.unbuildable > 2
+    assert choices.unbuildable > 0
     assert (choices.chosen == NONE).sum() == choices.foreign + choices.unbuildable
 
 

@@ -18,7 +18,7 @@ from blocks_planning.fitting.models import parse_model
 from blocks_planning.fitting.options import OneAhead, Solves
 from blocks_planning.fitting.points import Asking, points_of
 from blocks_planning.fitting.simulation import Chooser, roll_out
-from blocks_planning.people.families import FAMILIES
+from blocks_planning.people.families import family_names, find_family
 from blocks_planning.search.result import Problem
 from blocks_planning.search.searches import BreadthFirst
 from blocks_planning.search.solve import solve
@@ -34,7 +34,7 @@ def test_choices_of_a_planner_are_its_first_subgoals() -> None:
     assert [point.built for point in points] == [one.decision.built for one in record.decisions]
     assert {point.session for point in points} == {'seed 4'}
     for point, entry in zip(points, record.decisions, strict=True):
-        assert point.built | point.cells == entry.decision.subgoals[0].region
+        assert point.built | point.cells == entry.decision.subgoals[0].target
         assert not point.built & point.cells
         assert point.asking == Asking(record.spec.search, 4, record.spec.budget)
 
@@ -43,7 +43,7 @@ def test_choices_of_a_person_are_the_regions_to_be_built() -> None:
     planned = builders.record(builders.CHAIR, strategy='scoping', lam=0.01)
     task = planned.spec.task
     first, *_ = planned.decisions
-    drawn = first.decision.subgoals[0].region
+    drawn = first.decision.subgoals[0].target
     kinds = [
         (ProposalKind.WITHDRAWN, drawn),
         (ProposalKind.BUILD, 1),  # could not be built
@@ -63,11 +63,11 @@ def test_choices_of_a_person_are_the_regions_to_be_built() -> None:
     ]
 
 
-@pytest.mark.parametrize('family', FAMILIES)
+@pytest.mark.parametrize('family', family_names())
 def test_options_are_the_regions_with_what_their_solves_gave(family: str) -> None:
     task = builders.task(builders.FRAME)
     options = OneAhead(family, Solves()).options(task, 0, ASKING)
-    assert [option.cells for option in options] == FAMILIES[family](task, 0)
+    assert [option.cells for option in options] == find_family(family)(task, 0)
     for option in options:
         result = solve(Problem(task, 0, option.cells), *ASKING)
         assert bool(option.sequences) == result.solved
@@ -79,7 +79,7 @@ def test_options_are_the_regions_with_what_their_solves_gave(family: str) -> Non
 def test_quick_try_gives_the_answer_of_the_whole_budget() -> None:
     task = builders.task('####/####/####/####/#..#/#..#')
     asking = Asking(BreadthFirst(1), 1, 50_000)
-    for cells in FAMILIES['rectangles'](task, 0):
+    for cells in find_family('rectangles')(task, 0):
         result = solve(Problem(task, 0, cells), *asking)
         found = Solves().solved(task, 0, cells, asking)
         assert found == (result if result.solved else None)

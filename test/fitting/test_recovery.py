@@ -134,7 +134,7 @@ def test_parameters_of_forty_sessions_of_sixteen_towers_are_recovered() -> None:
 
 
 def test_true_model_wins() -> None:
-    sessions = [points(f's{number}') for number in range(8)]
+    sessions = [points(f's{number}') for number in range(5)]
     names = ('rows', 'rows-no-cost', 'rows-no-progress', 'rectangles', 'random')
     rows = recover_models(sessions, [parse_model(name) for name in names], makers(), seed=2)
     rates = win_rates(rows)

@@ -37,6 +37,7 @@ class Solution:
     solution_cost: int
     planning_cost: int
     attempts: int
+    last_attempt: tuple[Placement, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,7 @@ def solve(
             return Solution(SOLVED, result.placements, result.cost, cost, number + 1)
         if cost >= budget:
             break
-    return Solution(BUDGET_EXHAUSTED, (), 0, cost, number + 1)
+    return Solution(BUDGET_EXHAUSTED, (), 0, cost, number + 1, tuple(result.placements))
 
 
 def region_heights(silhouette: Cells, height: int, built: Cells) -> list[int]:
@@ -162,6 +163,17 @@ def none(
     )
     cells = len(silhouette) - len(built)
     candidate = Candidate(whole, cells, solution.planning_cost, None, solution.status)
+    if solution.last_attempt:
+        return Trial(
+            status=STUCK,
+            placements=solution.last_attempt,
+            blocks=len(solution.last_attempt),
+            subgoals=1,
+            action_planning_cost=solution.planning_cost,
+            subgoal_planning_cost=0,
+            solution_cost=0,
+            decisions=(Decision(built, (candidate,), whole),),
+        )
     if solution.status != SOLVED:
         return Trial(GAVE_UP, (), 0, 0, 0, 0, 0, (Decision(built, (candidate,), None),))
     return Trial(

@@ -346,7 +346,7 @@ def upper_bound(task: Task, parent: TreeNode, child: TreeNode, exploration: floa
 def natural_logarithm(number: int) -> float:
     """ln of m * 2**e, by the series of 2 atanh((m - 1) / (m + 1)) with 18 terms."""
     e = number.bit_length() - 1
-    m = number / 2**e
+    m = math.ldexp(number, -e)
     s = (m - 1) / (m + 1)
     series = 1 / 35
     for divisor in (33, 31, 29, 27, 25, 23, 21, 19, 17, 15, 13, 11, 9, 7, 5, 3, 1):

@@ -6,7 +6,9 @@ from blocks_planning.board.blocks import Block, Placed, Placement
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import ConfigurationError, InvalidInput
 
-pytest.importorskip('mujoco', reason='the robot is an extra: pip install -r requirements/robot.in')
+pytest.importorskip(
+    'mujoco', reason='the extra robot is not installed: pip install -r requirements/lock-robot.txt'
+)
 
 from blocks_planning.robot.driving import carry_out, carry_out_all, score
 from blocks_planning.robot.phases import ACT, BOUNDS_S, Phase

@@ -573,11 +573,14 @@ def test_cancelled_trial(tmp_path: Path, after: int) -> None:
 
 # Lies
 
+
+def _as_stuck(outcome: Any) -> None:
+    outcome.status = 'stuck'
+    outcome.code = outcome.CODE_STUCK
+
+
 LIES: dict[str, Callable[[Any], object]] = {
-    'status': lambda outcome: (
-        setattr(outcome, 'status', 'stuck'),
-        setattr(outcome, 'code', outcome.CODE_STUCK),
-    ),
+    'status': _as_stuck,
     'blocks': lambda outcome: setattr(outcome, 'blocks', outcome.blocks + 1),
     'subgoals': lambda outcome: setattr(outcome, 'subgoals', outcome.subgoals + 1),
     'action_planning_cost': lambda outcome: setattr(outcome, 'action_planning_cost', 1),

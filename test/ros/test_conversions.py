@@ -136,7 +136,7 @@ def test_settings_of_a_strategy_that_is_added_travel_with_their_types() -> None:
         assert [s.type for s in message.planner.strategy_settings] == [1, 2, 3, 4]
         assert spec_from_ros(message) == trial
         del message.planner.strategy_settings[1]  # what is left out keeps its default
-        assert spec_from_ros(message).strategy == Timid(False, 3, 2.5, 'hm')
+        assert spec_from_ros(message).strategy == Timid(brave=False, steps=3, fear=2.5, word='hm')
     assert issubclass(Timid, Configured)
 
 

@@ -11,13 +11,12 @@ from graphs import bring_up, record_lines, run_graph, write_script
 from peers import Bench, Graph, Peer
 from persons import BUILD, WITHDRAWN, Person, human_spec, rows_of
 
-from blocks_planning.board.geometry import Board
 from blocks_planning.ros.bagging.bags import trials_of
 from blocks_planning.ros.nodes import subgoal_selector
 from blocks_planning.ros.wire.graph import SUBGOAL_SELECTOR
 from blocks_planning.ros.wire.topics import OUTCOME, PROPOSAL, SEARCH_RESULT, STATE, SUBGOAL, TRIAL
 from blocks_planning.subgoals.proposals import Proposal
-from blocks_planning.trials.execution import SubgoalChosen
+from blocks_planning.trials.execution import SubgoalChosen, history
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     Message,
@@ -29,8 +28,8 @@ from blocks_planning.trials.messages import (
 )
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.script import read_script
+from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.verify import contradictions
-from blocks_planning.worlds.observation import states_of
 
 SPEC = human_spec('#..#/#..#/####/####/#..#/#..#', depth=2)
 
@@ -85,7 +84,7 @@ class Proposer(Peer):
         if state is None or isinstance(heard, (SubgoalChosen, TrialEnded)):
             return
         if state.status.value != 'building' or (
-            chosen and is_under_way(self._board, chosen[-1], state)
+            chosen and is_under_way(self.person.spec, chosen[-1], state)
         ):
             return
         is_answer = not isinstance(heard, WorldState)
@@ -99,11 +98,12 @@ class Proposer(Peer):
                 return
 
 
-def is_under_way(board: Board, chosen: SubgoalChosen, state: WorldState) -> bool:
+def is_under_way(spec: TrialSpec, chosen: SubgoalChosen, state: WorldState) -> bool:
     """Whether the subgoal leads on from a state, or begins after it."""
     if chosen.sequence > state.sequence:
         return True
-    return chosen.progress(board, states_of(board, state.observations)).is_open
+    seen = history(spec.task.board, state.observations)
+    return chosen.progress(spec, seen).is_open
 
 
 def test_whole_graph_with_a_person(graph: Graph, tmp_path: Path) -> None:

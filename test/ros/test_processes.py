@@ -6,11 +6,15 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from typing import Any
 
 import pytest
+from builders import CHAIR, spec
 from graphs import NODES
+from peers import Bench, Graph
 
+from blocks_planning.ros.nodes import action_searcher
 from blocks_planning.ros.runtime import process as process_module
 from blocks_planning.ros.runtime import processes
 from blocks_planning.ros.runtime.processes import (
@@ -21,7 +25,11 @@ from blocks_planning.ros.runtime.processes import (
     NodeProcess,
     tell_ready,
 )
+from blocks_planning.ros.wire.graph import ACTION_SEARCHER
+from blocks_planning.subgoals.decision import Query
+from blocks_planning.trials.messages import SearchAnswer, SearchRequest, TrialStarted
 
+SPEC = spec(CHAIR, depth=2)
 CRASH, KILLED, ENDED = 3, -signal.SIGKILL, 0
 
 
@@ -190,3 +198,22 @@ def test_node_that_is_made_slowly_counts_as_running() -> None:
     assert (done.stdout, done.returncode) == ('made\n', 0)
     assert 'was stopped' not in done.stderr
     assert process_module.STOOD_STILL_S > 0.5
+
+
+def test_node_joins_before_its_searches_are_compiled(
+    graph: Graph, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """It says so, and is waited for."""
+    may_end = threading.Event()
+    monkeypatch.setattr(action_searcher, 'warm_up', may_end.wait)
+    node = graph.add(action_searcher.ActionSearcher)
+    node.compile()
+    on = Bench(graph, ACTION_SEARCHER, node, SPEC)
+    assert node.health().state == 'compiling'
+    started = TrialStarted(SPEC.trial_id, SPEC)
+    on.tell(started, SearchRequest(SPEC.trial_id, (Query(0, SPEC.task.rows(2)),)))
+    assert on.peer.only(SearchAnswer) == []
+    may_end.set()
+    assert on.hear(1, SearchAnswer)[0].query == Query(0, SPEC.task.rows(2))
+    assert node.health().state == 'building'
+    assert 'compiling the searches' in capfd.readouterr().err

@@ -14,7 +14,8 @@ import yaml
 from builders import spec
 from source_imports import ROOT
 
-from blocks_planning.ros.nodes.marker_publisher import CELL_SIZE, FRAME_ID
+from blocks_planning.ros.nodes.marker_publisher import CELL_SIZE
+from blocks_planning.ros.runtime.part_node import FRAME_ID
 from blocks_planning.ros.wire.topics import MARKERS, TOPICS
 from blocks_planning.trials.local import run_trial
 from blocks_planning.view.scene import scene_of, scenes_of

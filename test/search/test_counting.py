@@ -13,8 +13,8 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.errors import LimitExceeded
 from blocks_planning.search.counting import TaskSize, count_task
-from blocks_planning.search.reachable import count_states
 from blocks_planning.search.result import CancelToken
+from blocks_planning.search.state_counts import count_states
 
 DOMINOES = (Block(1, 2), Block(2, 1))
 

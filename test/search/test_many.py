@@ -6,7 +6,7 @@ import random
 import threading
 from collections import Counter
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import pytest
 from problems import random_problem
@@ -194,7 +194,7 @@ def test_a_search_that_outgrows_its_memory_says_so_for_that_problem_only(
         ({'workers': 0}, 'workers must be a whole number from 1'),
     ],
 )
-def test_bad_numbers_are_refused(settings: dict[str, int], message: str) -> None:
+def test_bad_numbers_are_refused(settings: dict[str, Any], message: str) -> None:
     with pytest.raises(ConfigurationError, match=message):
         solve_many([], BreadthFirst(), **{'seed': 0, **settings})
 

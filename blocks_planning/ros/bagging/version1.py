@@ -27,7 +27,7 @@ from blocks_planning.subgoals.proposals import Proposal, proposed_at
 from blocks_planning.subgoals.regions import Region, drawn_region, rows_label
 from blocks_planning.subgoals.registry import STRATEGIES
 from blocks_planning.trials.spec import TrialSpec
-from blocks_planning.trials.version1 import drawn_in
+from blocks_planning.trials.version1 import DIFFERENT_NOW, drawn_in
 
 _FIELDS = {
     'lambda': 'lambda_weight',
@@ -96,7 +96,8 @@ def _settings(registry: Registry, name: str, config: Any) -> list[ros.Setting]:
     """The settings of a member that version 1 knew; an unknown member has none."""
     known = setting_names(registry[name]) if name in registry else []
     values = {key: getattr(config, field) for key, field in _FIELDS.items() if key in known}
-    return settings_to_ros({key: _plain(value) for key, value in values.items()})
+    different = {key: value for key, value in DIFFERENT_NOW.items() if key in known}
+    return settings_to_ros({**{key: _plain(value) for key, value in values.items()}, **different})
 
 
 def _plain(value: Any) -> Any:

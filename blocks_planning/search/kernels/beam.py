@@ -98,6 +98,7 @@ def _keep(search, tables, start, end, least, tied, generator, cancel):
         The end of the next level, or -1 if cancelled.
     """
     candidates = search.children[least]
+    everyone = tied == candidates
     kept = end
     for node in range(start, end):
         if cancel[0] != 0:
@@ -113,8 +114,8 @@ def _keep(search, tables, start, end, least, tied, generator, cancel):
                 move = block * tables.cells + lowest(places)
                 places = without_lowest(places)
                 if reached == least:
-                    is_kept = tied == candidates
-                    if tied > 0 and not is_kept:
+                    is_kept = everyone
+                    if tied > 0 and not everyone:
                         is_kept = below(generator, candidates) < tied
                     candidates -= 1
                     if not is_kept:

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from blocks_planning.search.result import SolveStatus
-from blocks_planning.subgoals.decision import Candidate, Chain, Decision, Situation
+from blocks_planning.search.result import SolveResult, SolveStatus
+from blocks_planning.subgoals.decision import Candidate, Chain, Decision, Query, Situation
 from blocks_planning.subgoals.planner import cells_added, queries_along
 from blocks_planning.subgoals.proposals import proposed_at
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
@@ -18,7 +18,7 @@ from blocks_planning.worlds.observation import Blocks, blocks_after
 
 
 def situation_of(record: TrialRecord, index: int) -> Situation:
-    """The situation of a decision, but for the answers of the searcher."""
+    """The situation of a decision, with the answers that the record still has."""
     entry = record.decisions[index]
     blocks: Blocks = ()
     for observation in record.observations[: entry.sequence + 1]:
@@ -27,11 +27,33 @@ def situation_of(record: TrialRecord, index: int) -> Situation:
         task=record.spec.task,
         built=entry.decision.built,
         seed=record.spec.seed,
-        known={},
+        known=dict(_answers(entry.decision)),
         proposals=proposed_at(record.proposals, entry.sequence),
         blocks=blocks,
         decisions=index,
     )
+
+
+def _answers(decision: Decision) -> Iterator[tuple[Query, SolveResult]]:
+    """The answers that the executed subgoals were made of."""
+    if decision.chosen is None or decision.chosen >= len(decision.candidates):
+        return
+    status = decision.candidates[decision.chosen].status
+    built = decision.built
+    for subgoal in decision.subgoals:
+        plan, solved = subgoal.placements, status is SolveStatus.SOLVED
+        yield (
+            Query(built, subgoal.target),
+            SolveResult(
+                status=status,
+                placements=plan if solved else (),
+                solution_cost=subgoal.solution_cost,
+                planning_cost=subgoal.planning_cost,
+                attempts=subgoal.attempts,
+                last_attempt=() if solved else plan,
+            ),
+        )
+        built = subgoal.target
 
 
 def wrong_decision(record: TrialRecord, index: int) -> Iterator[str]:

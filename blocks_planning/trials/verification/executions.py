@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from blocks_planning.board import rules
-from blocks_planning.board.geometry import Board, Mask
+from blocks_planning.board.geometry import Mask
+from blocks_planning.board.task import Task
 from blocks_planning.subgoals.decision import Subgoal
 from blocks_planning.trials.execution import History, Progress, history, progress_of
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
@@ -40,9 +41,12 @@ def _execution(
         return f'the state of observation {due} is not {decision.built:#x}', due
     if decision.chosen is None:
         return ('' if is_last else 'gives up, but is not the last'), due
+    if decision.chosen >= len(decision.candidates):
+        return 'chose no candidate', due
     start, built = due, decision.built
     for number, subgoal in enumerate(decision.subgoals):
-        sentence = _wrong_plan(record.spec.task.board, built, subgoal)
+        is_solved = decision.candidates[decision.chosen].is_solved
+        sentence = _wrong_plan(record.spec.task, built, subgoal, is_solved)
         if sentence:
             return f'subgoal {number}: {sentence}', due
         if number < entry.executed:
@@ -57,12 +61,16 @@ def _execution(
     return _left_out(record, entry), start
 
 
-def _wrong_plan(board: Board, built: Mask, subgoal: Subgoal) -> str:
+def _wrong_plan(task: Task, built: Mask, subgoal: Subgoal, is_solved: bool) -> str:
+    """Why a plan does not fill its target, or stops before it is stuck; '' if it is right."""
     for placed in subgoal.placements:
-        if rules.drop(board, built, placed.placement) != placed:
+        if rules.drop(task.board, built, placed.placement) != placed:
             return f'block {placed} of its plan is not where it comes to rest'
-        built |= rules.cells_of(board, placed)
-    return '' if built == subgoal.target else 'its plan does not fill it'
+        built |= rules.cells_of(task.board, placed)
+    if is_solved:
+        return '' if built == subgoal.target else 'its plan does not fill it'
+    goes_on = next(rules.legal_placements(task, built, subgoal.target), None) is not None
+    return 'its last attempt stops before it is stuck' if goes_on else ''
 
 
 def _wrong_orders(record: TrialRecord, subgoal: Subgoal, start: int, progress: Progress) -> str:

@@ -23,7 +23,7 @@ from blocks_planning.board.importing.towers import (
 from blocks_planning.errors import StimulusError
 
 STEP = picture('#./##')
-BLOCKS = {
+BLOCKS: dict[str, Any] = {
     'blocks': [
         {'x': 0, 'y': 0, 'width': 2, 'height': 1, 'colour': 'red'},
         {'x': 0, 'y': 1, 'width': 1, 'height': 1},

@@ -109,10 +109,12 @@ def _decision_from_ros(board: Board, message: ros.Decision, field: str) -> Decis
         for number, candidate in enumerate(message.candidates)
     )
     subgoals: list[Subgoal] = []
+    is_chosen = 0 <= message.chosen < len(candidates)
+    is_solved = not is_chosen or candidates[message.chosen].is_solved
     for number, planned in enumerate(message.subgoals):
         state = subgoals[-1].target if subgoals else built
         place = f'{field}.subgoals[{number}]'
-        subgoals.append(_planned_from_ros(board, state, planned, regions, place))
+        subgoals.append(_planned_from_ros(board, state, planned, regions, place, is_solved))
     if not -1 <= message.chosen < len(candidates) or (message.chosen < 0) != (not subgoals):
         expected = 'a candidate, and subgoals if there is one'
         raise refuse(f'{field}.chosen', message.chosen, expected)
@@ -204,11 +206,13 @@ def _planned_from_ros(
     message: ros.PlannedSubgoal,
     regions: Sequence[Region],
     field: str,
+    is_solved: bool,
 ) -> Subgoal:
     target = mask_on(board, message.target, f'{field}.target')
     placements, reached = way_from_ros(board, built, message.placements, f'{field}.placements')
-    if reached != target or built == target:
-        raise refuse(f'{field}.placements', len(placements), 'placements that fill the target')
+    fits = reached == target if is_solved else not reached & ~target
+    if not fits or built == target:
+        raise refuse(f'{field}.placements', len(placements), 'placements that fit the target')
     if not 1 <= message.execute <= len(placements):
         raise refuse(f'{field}.execute', message.execute, f'1 to {len(placements)} placements')
     return Subgoal(

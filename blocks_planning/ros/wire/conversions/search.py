@@ -66,7 +66,7 @@ def answer_to_ros(board: Board, message: SearchAnswer) -> ros.SearchResult:
         query=query_to_ros(board, message.query),
         status=result.status.value,
         reason=_SOLVE_REASONS[result.status],
-        placements=blocks_to_ros(result.placements),
+        placements=blocks_to_ros(result.plan),
         solution_cost=result.solution_cost,
         planning_cost=result.planning_cost,
         attempts=result.attempts,
@@ -78,15 +78,16 @@ def answer_from_ros(board: Board, message: ros.SearchResult) -> SearchAnswer:
     query = query_from_ros(board, message.query, 'query')
     status = word(SolveStatus, message.status, 'status', SOLVE_STATUSES)
     placements, reached = way_from_ros(board, query.built, message.placements, 'placements')
-    wanted = query.target if status is SolveStatus.SOLVED else query.built
-    if reached != wanted:
+    solved = status is SolveStatus.SOLVED
+    if (reached != query.target) if solved else (reached & ~query.target):
         raise refuse('placements', len(placements), f'placements that fit status {status.value}')
     result = SolveResult(
         status,
-        placements,
+        placements if solved else (),
         cost(message.solution_cost, 'solution_cost'),
         cost(message.planning_cost, 'planning_cost'),
         message.attempts,
+        () if solved else placements,
     )
     return SearchAnswer(message.trial_id, query, result)
 
