@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from matplotlib.figure import Figure
-
 from blocks_planning.analysis.style import new_figure, styled
+from blocks_planning.extras import extra
+
+with extra('figures'):
+    from matplotlib.figure import Figure
 
 _COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9', '#000000')
 _LABELS = {

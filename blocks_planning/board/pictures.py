@@ -222,7 +222,7 @@ def read_text(path: Path) -> str:
         with path.open('rb') as file:
             data = file.read(MAX_FILE_BYTES + 1)
     except OSError as error:
-        if path.is_dir():
+        if isinstance(error, IsADirectoryError):
             raise StimulusError(f'{path}: is a directory; name a file in it') from None
         raise StimulusError(f'{path}: cannot be read: {error.strerror}') from None
     except ValueError as error:  # a NUL in the path

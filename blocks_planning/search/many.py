@@ -87,10 +87,9 @@ def solve_many(
 
 def cores() -> int:
     """Number of cores that this process may use."""
-    try:
+    if hasattr(os, 'sched_getaffinity'):
         return len(os.sched_getaffinity(0))
-    except AttributeError:  # not on every system
-        return os.cpu_count() or 1
+    return os.cpu_count() or 1
 
 
 Solved = list[tuple[Problem, SolveResult]]

@@ -21,6 +21,7 @@ STATUS_WORDS = {
     TrialStatus.BUILDING: 'building',
     TrialStatus.SUCCESS: 'success',
     TrialStatus.STUCK: 'stuck',
+    TrialStatus.COLLAPSED: 'collapsed',
     TrialStatus.GAVE_UP: 'gave up',
     TrialStatus.CANCELLED: 'cancelled',
 }

@@ -116,14 +116,16 @@ def test_a_block_keeps_its_colour(tower_spec, recorded):
 
 @pytest.mark.parametrize('signs', [palette.UNICODE, palette.ASCII])
 def test_signs_can_be_shown_and_told_apart(signs):
-    ''.join((*signs.frames[0], *signs.frames[1], *signs[1:6])).encode(signs.encoding)
+    single = (signs.target, signs.region, signs.ground, signs.marker, signs.more)
+    ''.join((*signs.frames[0], *signs.frames[1], *single, signs.halves)).encode(signs.encoding)
     assert len({signs.target, signs.region, ' '}) == 3
     for one, other in pairwise((*signs.frames, signs.frames[0])):
         assert set(one.box) & set(other.box) <= {' '}
         assert one.flat != other.flat
     for frame in signs.frames:
         assert (len(frame.box), len(frame.flat)) == (9, 3)
-    assert all(len(sign) == 1 for sign in signs[1:6])
+    assert all(len(sign) == 1 for sign in single)
+    assert len(set(signs.halves)) == len(signs.halves) == 3
 
 
 def test_shown_leaves_one_line_that_can_be_encoded():

@@ -3,7 +3,7 @@ from __future__ import annotations
 from functools import reduce
 
 import pytest
-from builders import CHAIR, cancelled_record, spec
+from builders import CHAIR, NEVER_SOLVED, cancelled_record, spec
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -115,8 +115,8 @@ def test_there_is_a_scene_for_everything_that_happens(tower_spec, recorded):
     assert set(regions) == {subgoal.target for subgoal in record.executed_subgoals()}
 
 
-def test_giving_up_is_a_scene(tower_spec, recorded):
-    record = recorded(tower_spec(9, 'none'))
+def test_giving_up_is_a_scene(recorded):
+    record = recorded(spec(NEVER_SOLVED))
     assert record.status is TrialStatus.GAVE_UP
     scenes = list(scenes_of(record))
     assert [scene.decision is None for scene in scenes] == [True, False, False]

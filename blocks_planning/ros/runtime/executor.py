@@ -94,7 +94,7 @@ class MessageExecutor(SingleThreadedExecutor):
         count = NumberOfEntities(subscriptions, guards, timers, clients, services)
         for waitable in self._node.waitables:
             count += waitable.get_num_entities()
-        with self.context.handle:
+        with self.context.handle:  # type: ignore[union-attr]
             return _rclpy.WaitSet(
                 count.num_subscriptions,
                 count.num_guard_conditions,
