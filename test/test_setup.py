@@ -14,7 +14,7 @@ NEEDED = ['setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'requirement
 MESSAGES = sorted(
     path.relative_to(ROOT)
     for path in (ROOT / 'msg_defs').rglob('*')
-    if path.is_file() and path.name != 'README.md'
+    if path.is_file() and path.name not in ('README.md', 'CHANGELOG.rst')
 )
 # Commands of a machine that would do.
 GOOD = {
