@@ -99,7 +99,6 @@ REFUSED: list[tuple[str, Callable[[Any], None], str, str]] = [
     ('state', set_field('placements[0].column', 200), 'placements[0]', '200'),
     ('state', set_field('placements[0].block.width', 0), 'placements[0].block.width', '0'),
     ('search/result', set_field('status', 'cancelled'), 'status', "'cancelled'"),
-    ('search/result', set_field('status', 'budget_exhausted'), 'placements', ''),
     ('search/result', _drop_last('placements'), 'placements', ''),
     ('search/result', set_field('placements', FREE_FALL), 'placements[0].row', '3'),
     ('search/request', set_field('queries[0].built.cells', b'\1' * 24), 'queries[0].target', ''),
