@@ -39,8 +39,12 @@ _STRATEGIES: list[Settings] = [
     {'strategy': 'none'},
     {'strategy': 'scoping', 'commit': 'subgoal', 'lam': 0.01},
     {'strategy': 'scoping', 'commit': 'action', 'lam': 0.01},
+    {'strategy': 'scoping', 'lam': 0.01, 'regions': 'rectangles', 'horizon': 2},
+    {'strategy': 'scoping', 'lam': 0.01, 'horizon': 3, 'max_sequences': 5, 'choice': 'softmax'},
     {'strategy': 'full', 'lam': 0.5},
 ]
+_OF_STRATEGY = ('commit', 'regions', 'min_cells', 'horizon', 'max_sequences')
+_OF_STRATEGY += ('choice', 'temperature', 'aggregate')
 _SEARCHES: list[Settings] = [
     {'search': 'bfs', 'depth': 1},
     {'search': 'bfs', 'depth': 3},
@@ -93,10 +97,10 @@ def spec(
     stimulus: str = 'small',
     **settings: Any,
 ) -> TrialSpec:
-    """A trial; ``lam`` and ``commit`` are settings of the strategy, the others of the search."""
+    """A trial; ``lam`` and the settings of ``scoping`` go to the strategy, the others to the search."""
     of_strategy = {
         name: settings.pop(key)
-        for key, name in (('lam', 'lambda'), ('commit', 'commit'))
+        for key, name in (('lam', 'lambda'), *((name, name) for name in _OF_STRATEGY))
         if key in settings
     }
     return TrialSpec(

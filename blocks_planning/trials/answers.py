@@ -32,6 +32,15 @@ class Answers(Mapping[Query, SolveResult]):
         added._size = self._size + 1
         return added
 
+    def latest(self, most: int) -> Answers:
+        """These answers without the oldest, if there are more than ``most``."""
+        if self._size <= most:
+            return self
+        kept = Answers()
+        for query in list(self)[self._size - most :]:
+            kept = kept.with_answer(query, self[query])
+        return kept
+
     def __getitem__(self, query: Query) -> SolveResult:
         number, result = self._store[query]
         if number >= self._size:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
-from blocks_planning.search.result import SolveResult
 from blocks_planning.subgoals.decision import Query
+from blocks_planning.trials.answers import Answers
 from blocks_planning.trials.execution import SubgoalChosen, history
 from blocks_planning.trials.messages import (
     Message,
@@ -42,7 +42,7 @@ class Memory:
 
     trial: TrialStarted | None = None
     state: WorldState | None = None
-    known: Mapping[Query, SolveResult] = field(default_factory=dict)
+    known: Answers = field(default_factory=Answers)
     solving: frozenset[Query] = frozenset()
     chosen: SubgoalChosen | None = None
     planned: SubgoalChosen | None = None
@@ -62,9 +62,8 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
         case SearchRequest(trial_id, queries):
             return _answer(memory, trial_id, queries)
         case SearchAnswer(_, query, result) if query not in memory.known:
-            known, solving = {**memory.known, query: result}, memory.solving - {query}
-            if len(known) > MOST_KNOWN:
-                del known[next(iter(known))]
+            known = memory.known.with_answer(query, result).latest(MOST_KNOWN)
+            solving = memory.solving - {query}
             return _act(replace(memory, known=known, solving=solving), only_for=query)
         case WorldState() if state is None or message.sequence > state.sequence:
             return _act(replace(memory, state=message))

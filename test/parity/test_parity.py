@@ -54,6 +54,23 @@ _SMALL: list[dict[str, Any]] = [
         'budget': 5000,
         'seeds': 1,
     },
+    {  # 3
+        'stimuli': ['cogsci2021/5'],
+        'searches': [{'name': 'bfs', 'depth': 1}],
+        'strategies': [
+            {'name': 'scoping', 'regions': 'rectangles', 'choice': 'softmax'},
+            {
+                'name': 'scoping',
+                'regions': 'rectangles',
+                'min_cells': 4,
+                'horizon': 2,
+                'max_sequences': 300,
+            },
+            {'name': 'scoping', 'horizon': 3, 'choice': 'softmax', 'aggregate': 'softmax'},
+        ],
+        'budget': 500,
+        'seeds': 1,
+    },
 ]
 _LARGE: list[dict[str, Any]] = [
     *_SMALL,

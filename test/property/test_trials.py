@@ -27,6 +27,17 @@ PLANNERS = st.one_of(
         st.one_of(st.just(0), LAMBDAS),
         st.sampled_from(['subgoal', 'action']),
     ),
+    st.fixed_dictionaries(
+        {
+            'regions': st.sampled_from(['rows', 'rectangles']),
+            'horizon': st.integers(1, 3),
+            'max_sequences': st.sampled_from([1, 20]),
+            'choice': st.sampled_from(['best', 'softmax']),
+            'temperature': LAMBDAS,
+            'aggregate': st.sampled_from(['best', 'softmax']),
+            'aim': st.sampled_from(['perfect', 'most']),
+        }
+    ).map(lambda chosen: make_strategy('scoping', chosen)),
     st.builds(lambda lam: make_strategy('full', {'lambda': lam}), LAMBDAS),
 )
 

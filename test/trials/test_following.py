@@ -15,6 +15,7 @@ from blocks_planning.search.searches import AStar, BestFirst, BreadthFirst, Exac
 from blocks_planning.subgoals.decision import Query
 from blocks_planning.subgoals.full import FullSubgoals
 from blocks_planning.subgoals.none import NoSubgoals
+from blocks_planning.subgoals.regions import Rectangles
 from blocks_planning.subgoals.scoping import Scoping
 from blocks_planning.trials.following import follow
 from blocks_planning.trials.local import run_trial
@@ -23,6 +24,8 @@ from blocks_planning.trials.spec import TrialSpec
 PLANNERS = [
     NoSubgoals(),
     *(Scoping(lam, commit) for lam in (0.0, 0.002, 0.05) for commit in ('subgoal', 'action')),
+    Scoping(0.01, regions=Rectangles(), horizon=2),
+    Scoping(0.01, horizon=2, max_sequences=3, choice='softmax', aggregate='softmax'),
     FullSubgoals(),
     FullSubgoals(0.001),
 ]

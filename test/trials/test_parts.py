@@ -64,6 +64,7 @@ PLANNERS: list[dict[str, Any]] = [
     {'strategy': 'scoping', 'commit': 'action', 'lam': 0.1, 'depth': 1},
     {'strategy': 'full', 'depth': 1},
     {'strategy': 'none', 'depth': 2},
+    {'strategy': 'scoping', 'lam': 0.1, 'horizon': 2, 'choice': 'softmax', 'depth': 1},
 ]
 ROWS = [CHAIR, FRAME, ODD, NEVER_SOLVED, NOTHING_FITS, EMPTY]
 TRIALS = [spec(rows, budget=2000, **planner) for rows in ROWS for planner in PLANNERS]

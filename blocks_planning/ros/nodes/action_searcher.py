@@ -18,15 +18,15 @@ import time
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeAlias
 
 from blocks_planning.ros.runtime.diagnostics import Health
 from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import PartNode
 from blocks_planning.ros.runtime.process import run
 from blocks_planning.ros.wire.graph import ACTION_SEARCHER
-from blocks_planning.search.result import CancelToken, Problem, SolveStatus
-from blocks_planning.search.solve import solve
+from blocks_planning.search.many import solve_many
+from blocks_planning.search.result import CancelToken, Problem, SolveResult, SolveStatus
 from blocks_planning.search.warming import warm_up
 from blocks_planning.trials import searcher
 from blocks_planning.trials.messages import (
@@ -40,6 +40,11 @@ from blocks_planning.trials.messages import (
 WORKERS = Parameter('workers', 2, 'Searches that run at once.', (1, 64))
 
 
+MOST_AT_ONCE = 32
+"""Most queries that a thread solves in one call."""
+_Question: TypeAlias = 'tuple[TrialStarted, Solve, CancelToken]'
+
+
 class ActionSearcher(PartNode):
     """The searcher, with threads to search in."""
 
@@ -51,6 +56,7 @@ class ActionSearcher(PartNode):
         self.is_compiling = False
         self._may_search = threading.Event()
         self._may_search.set()
+        self._waiting: deque[_Question] = deque()
         self._answers: deque[SearchAnswer | BaseException] = deque()
         self._counting = threading.Lock()
         self._running = 0
@@ -78,7 +84,8 @@ class ActionSearcher(PartNode):
         """Search in a thread; the answer comes back to the thread of the node."""
         assert isinstance(message, Solve)
         assert self.trial is not None
-        self._threads.submit(self._search, self.trial, message, self._cancel)
+        self._waiting.append((self.trial, message, self._cancel))
+        self._threads.submit(self._search_some)
 
     def health(self) -> Health:
         """See :class:`PartNode`; the state is ``compiling`` until searches can be run."""
@@ -108,22 +115,40 @@ class ActionSearcher(PartNode):
         self._may_search.set()
         self.call_soon(self._deliver)
 
-    def _search(self, trial: TrialStarted, question: Solve, cancel: CancelToken) -> None:
-        spec = trial.spec
+    def _search_some(self) -> None:
+        """Take questions of a trial from those that wait, and solve them in one call."""
         self._may_search.wait()
-        self._count_running(1)
+        questions = self._take_questions()
+        if not questions:
+            return
+        trial, _, cancel = questions[0]
+        spec = trial.spec
+        queries = [question.query for _, question, _ in questions]
+        problems = [Problem(spec.task, *query) for query in queries]
+
+        def done(index: int, result: SolveResult) -> None:
+            self._count_running(-1)
+            if result.status is not SolveStatus.CANCELLED:
+                self._answers.append(SearchAnswer(trial.trial_id, queries[index], result))
+                self.call_soon(self._deliver)
+
         try:
-            problem = Problem(spec.task, *question.query)
-            result = solve(problem, spec.search, spec.seed, spec.budget, cancel)
+            solve_many(problems, spec.search, spec.seed, spec.budget, cancel, done, workers=1)
         except BaseException as error:  # noqa: BLE001  raised again in the node's own thread
             self._answers.append(error)
-        else:
-            if result.status is SolveStatus.CANCELLED:
-                return
-            self._answers.append(SearchAnswer(trial.trial_id, question.query, result))
-        finally:
-            self._count_running(-1)
-        self.call_soon(self._deliver)
+            self.call_soon(self._deliver)
+
+    def _take_questions(self) -> list[_Question]:
+        """Some questions of the trial of the first; the more, the more wait."""
+        with self._counting:
+            most = min(MOST_AT_ONCE, -(-len(self._waiting) // (2 * self.values['workers'])))
+            taken: list[_Question] = []
+            while len(taken) < most and self._waiting:
+                if taken and self._waiting[0][2] is not taken[0][2]:
+                    break
+                taken.append(self._waiting.popleft())
+            self._running += len(taken)
+        return taken
 
     def _count_running(self, change: int) -> None:
         with self._counting:
@@ -140,6 +165,8 @@ class ActionSearcher(PartNode):
                 self.take(answer)
 
     def _stop_searching(self) -> None:
+        with self._counting:
+            self._waiting.clear()
         self._cancel.cancel()
         self._cancel = CancelToken()
 
