@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,7 +11,9 @@ from builders import CHAIR, ended, spec
 from peers import Bench, Graph
 from rclpy.parameter import Parameter
 
+from blocks_planning.ros.nodes import subgoal_selector, world
 from blocks_planning.ros.nodes.action_searcher import ActionSearcher
+from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
 from blocks_planning.ros.wire.graph import ACTION_SEARCHER
 from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
@@ -91,3 +95,24 @@ def _states_of(seed: int) -> list[WorldState]:
     heard: list[Message] = []
     run_trial(spec(CHAIR, lam=0.2, depth=2, seed=seed), observe=heard.append)
     return [message for message in heard if isinstance(message, WorldState)]
+
+
+def test_trial_starts_over_when_a_world_without_journal_was_killed(
+    graph: Graph, tmp_path: Path
+) -> None:
+    placing = {'parameter_overrides': [Parameter('placing_s', value=0.1)]}
+    first = graph.add(world.make_node, **placing)
+    graph.add(subgoal_selector.make_node)
+    graph.add(ActionSearcher)
+    overrides = [Parameter('out_dir', value=str(tmp_path)), Parameter('wait_for', value=['world'])]
+    orchestrator = graph.add(
+        lambda **options: TrialOrchestrator(
+            threading.Event(), parameter_overrides=overrides, **options
+        )
+    )
+    orchestrator.start_trial(SPEC.trial_id, SPEC)
+    graph.spin_until(lambda: orchestrator.memory.state and orchestrator.memory.state.sequence > 1)
+    graph.remove(first)
+    graph.add(world.make_node)
+    graph.spin_until(lambda: not orchestrator.is_busy)
+    assert (tmp_path / 'trials.jsonl').read_text(encoding='utf-8') == RECORD.to_line() + '\n'
