@@ -22,7 +22,9 @@ def answers(results: dict[str, Any]) -> list[str]:
     sentences = []
     for planner in planners:
         rows = [row for row in results['advantage'] if row['planner'] == planner]
-        sentences.append(f'{planner}: {_change(rows, "success")}; {_change(rows, "log2_cost_ratio")}.')
+        sentences.append(
+            f'{planner}: {_change(rows, "success")}; {_change(rows, "log2_cost_ratio")}.'
+        )
     return [*sentences, *_reasons(results)]
 
 

@@ -88,9 +88,7 @@ def test_the_drawing() -> None:
         ),
     ],
 )
-def test_who_looks(
-    seen: tuple[Observation, ...], expected: tuple[int, int, bool, bool]
-) -> None:
+def test_who_looks(seen: tuple[Observation, ...], expected: tuple[int, int, bool, bool]) -> None:
     assert progress(NONE, seen) == expected
     assert progress(NONE, seen).is_open == (not expected[2] and not expected[3])
 
