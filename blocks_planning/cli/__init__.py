@@ -22,6 +22,7 @@ from blocks_planning.cli.reproducing import exact_policy, growth, reproduce
 from blocks_planning.cli.running import solve, watch
 from blocks_planning.cli.stimuli import stimuli
 from blocks_planning.cli.sweeping import sweep
+from blocks_planning.cli.uncertainty import uncertain
 from blocks_planning.errors import BlocksPlanningError, LimitExceeded
 
 BAD_INPUT = 2
@@ -54,6 +55,7 @@ for command in (
     sweep,
     reproduce,
     growth,
+    uncertain,
     fit,
 ):
     commands.add_command(command)

@@ -15,7 +15,7 @@ current subgoal's plan leads through::
 * the state is unchanged: the order was lost, and is given again;
 * the state is any other: a *surprise*. The plan no longer holds, and a new decision is due.
 
-A strategy may ignore surprises (``is_blind``). Then an order counts as done when a block has landed,
+A strategy may ignore surprises (``is_blind``). Then an order counts as done when it has landed a block,
 wherever that was, and the execution ends early only where the next order is impossible.
 
 The subgoal ends when ``execute`` placements are done. Then the next subgoal of the decision
@@ -109,7 +109,8 @@ def _follow_blindly(board: Board, subgoal: Subgoal, start: int, seen: History) -
     done = 0
     for sequence in range(start, len(seen.states)):
         if sequence > start:
-            done += bool(seen.observations[sequence].landed)
+            observation = seen.observations[sequence]
+            done += observation.ordered is not None and bool(observation.landed)
         if done == subgoal.execute:
             return Progress(done, sequence, is_done=True, is_surprised=False)
     following = subgoal.placements[done].placement

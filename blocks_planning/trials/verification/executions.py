@@ -51,7 +51,7 @@ def _execution(
             return f'subgoal {number}: {sentence}', due
         if number < entry.executed:
             progress = progress_of(record.spec, built, subgoal, start, seen)
-            sentence = _wrong_orders(record, subgoal, start, progress)
+            sentence = _wrong_orders(record, built, subgoal, progress, start, seen)
             if sentence:
                 return f'subgoal {number}: {sentence}', due
             start = progress.sequence
@@ -73,14 +73,18 @@ def _wrong_plan(task: Task, built: Mask, subgoal: Subgoal, is_solved: bool) -> s
     return 'its last attempt stops before it is stuck' if goes_on else ''
 
 
-def _wrong_orders(record: TrialRecord, subgoal: Subgoal, start: int, progress: Progress) -> str:
+def _wrong_orders(
+    record: TrialRecord, built: Mask, subgoal: Subgoal, span: Progress, start: int, seen: History
+) -> str:
     """Why the orders of an execution are not those of its plan; '' if they are."""
-    done = 0
-    for sequence in range(start + 1, progress.sequence + 1):
-        seen = record.observations[sequence]
-        if seen.ordered is not None and seen.ordered != subgoal.placements[done].placement:
+    for sequence in range(start + 1, span.sequence + 1):
+        ordered = seen.observations[sequence].ordered
+        if ordered is None:
+            continue
+        before = History(seen.observations[:sequence], seen.states[:sequence])
+        done = progress_of(record.spec, built, subgoal, start, before).done
+        if ordered != subgoal.placements[done].placement:
             return f'observation {sequence} is of an order that was not planned'
-        done += bool(seen.landed)
     return ''
 
 

@@ -1,0 +1,50 @@
+"""The command that runs the experiment in uncertain worlds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import click
+
+from blocks_planning.cli.progress import bar
+from blocks_planning.cli.sweeping import out_option, print_summary, workers_option
+
+_QUICK = 'This is a quick run: few seeds and worlds. It shows that everything works, no more.'
+
+
+@click.command(epilog='\b\nExample:\n  blocks-planning uncertain --out uncertain')
+@out_option
+@click.option('--quick', is_flag=True, help='Few seeds and worlds: a look in seconds.')
+@click.option(
+    '--first-seed',
+    type=click.IntRange(0, 2**63),
+    default=0,
+    show_default=True,
+    help='The lowest seed; another one is another sample.',
+)
+@workers_option
+def uncertain(out: Path, quick: bool, first_seed: int, workers: int | None) -> int:
+    """Run planners in worlds that slip, lose and topple blocks; write report.html, results.json.
+
+    The best that any policy can reach stands beside them. Interrupted and started again it goes
+    on where it stopped. The exit code is 1 if a trial could not be run.
+    """
+    from blocks_planning.analysis.uncertainty_report import write_uncertainty
+    from blocks_planning.experiments.optima import optimum_table
+    from blocks_planning.experiments.reading import find_sweep, read_sweep
+    from blocks_planning.experiments.running import default_workers
+    from blocks_planning.experiments.sweeping import run_sweep
+
+    wanted = read_sweep(find_sweep('uncertain_quick' if quick else 'uncertain'))
+    wanted = replace(wanted, seeds=tuple(seed + first_seed for seed in wanted.seeds))
+    workers = workers or default_workers()
+    with bar('Trials') as report:
+        summary = run_sweep(wanted, out / 'sweep', workers, report=report)
+    optima = optimum_table(wanted, out, workers)
+    results = write_uncertainty(out / 'sweep', out, optima, [_QUICK] if quick else [])
+    print_summary(summary, out / 'sweep')
+    for sentence in results['answers']:
+        click.echo(sentence)
+    click.echo(f'{out / "report.html"}: written')
+    return int(summary.failed > 0)

@@ -1,0 +1,115 @@
+"""The experiment in uncertain worlds: what is written is whole, and follows from the trials."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from blocks_planning.analysis.uncertainty import over_towers, read_uncertain
+from blocks_planning.analysis.uncertainty_answers import first_change
+
+
+@pytest.fixture(scope='module')
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp('uncertain')
+    run(folder)
+    return folder
+
+
+def run(folder: Path) -> str:
+    command = [sys.executable, '-m', 'blocks_planning.cli', 'uncertain', '--quick']
+    command += ['--workers', '1', '--out', str(folder)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope='module')
+def results(folder: Path) -> Any:
+    return json.loads((folder / 'results.json').read_text())
+
+
+def test_report_is_in_one_piece(folder: Path) -> None:
+    html = (folder / 'report.html').read_text()
+    plain = re.sub(r'base64,[^"]*', '', html)
+    assert html.count('data:image/svg+xml;base64,') == 2
+    assert 'quick run' in plain
+    assert 'nan' not in plain
+    assert 'http' not in plain
+    for name in ('uncertainty', 'loose'):
+        assert (folder / 'figures' / f'{name}.png').stat().st_size > 10_000
+
+
+def test_numbers_follow_from_the_trials(folder: Path, results: Any) -> None:
+    trials = read_uncertain(folder / 'sweep')
+    assert results['trials'] == len(trials) == 16 * 2 * 5 * 4
+    best = {
+        (row['stimulus'], row['slip']): row['optimum']
+        for path in folder.glob('optimum-*.json')
+        for row in json.loads(path.read_text())
+    }
+    for cell in results['cells']:
+        mine = trials[
+            (trials['planner'] == cell['planner'])
+            & (trials['slip'] == cell['slip'])
+            & (trials['loss'] == cell['loss'])
+            & (trials['blocks_are'] == cell['blocks_are'])
+        ]
+        assert len(mine) == 32
+        success = float((mine['status'] == 'success').mean())
+        assert cell['success']['mean'] == pytest.approx(success)
+        assert cell['states']['mean'] == pytest.approx(float(mine['states'].mean()))
+        assert ('regret' in cell) == (cell['blocks_are'] == 'glued')
+        if 'regret' in cell:
+            optimum = np.mean([best[tower, cell['slip']] for tower in mine['stimulus']])
+            assert cell['regret']['mean'] == pytest.approx(optimum - success)
+
+
+def test_optimum_is_one_where_nothing_slips(results: Any) -> None:
+    sure, chancy = results['optima']
+    assert sure == {'slip': 0, 'mean': 1, 'ci': [1, 1], 'p': None}
+    assert 0 < chancy['mean'] < 1
+
+
+def test_started_again_it_says_the_same(folder: Path, results: Any) -> None:
+    said = run(folder)
+    assert json.loads((folder / 'results.json').read_text()) == results
+    for sentence in results['answers']:
+        assert sentence in said
+
+
+@pytest.mark.parametrize(
+    ('intervals', 'expected'),
+    [
+        ([(0, 0), (-1, 1), (1, 2), (0.5, 3)], (0.2, 1)),
+        ([(0, 0), (1, 2), (1, 2), (1, 2)], (0.1, 1)),
+        ([(0, 0), (1, 2), (-1, 2), (1, 2)], (0.3, 1)),
+        ([(0, 0), (1, 2), (1, 2), (-1, 2)], None),
+        ([(0, 0), (1, 2), (-2, -1), (-2, -1)], (0.2, -1)),
+        ([(0, 0), (-1, 1), (0, 1), (-1, 0)], None),
+    ],
+)
+def test_change_begins_where_it_stays(
+    intervals: list[tuple[float, float]], expected: tuple[float, int] | None
+) -> None:
+    rows = [
+        {'slip': round(0.1 * number, 1), 'gain_change': {'ci': list(interval)}}
+        for number, interval in enumerate(intervals)
+    ]
+    assert first_change(rows, 'gain') == expected
+
+
+def test_interval_is_over_towers() -> None:
+    values = np.array([0.0, 1.0] * 8)
+    found = over_towers(values)
+    assert found.mean == 0.5
+    # The mean of 16 draws from 0 and 1 has a standard deviation of 1/8.
+    assert found.low == pytest.approx(0.25, abs=0.07)
+    assert found.high == pytest.approx(0.75, abs=0.07)
