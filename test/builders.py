@@ -43,8 +43,10 @@ _STRATEGIES: list[Settings] = [
     {'strategy': 'scoping', 'lam': 0.01, 'horizon': 3, 'max_sequences': 5, 'choice': 'softmax'},
     {'strategy': 'full', 'lam': 0.5},
 ]
-_OF_STRATEGY = ('commit', 'regions', 'min_cells', 'horizon', 'max_sequences')
-_OF_STRATEGY += ('choice', 'temperature', 'aggregate')
+_OF_STRATEGY = (
+    *('commit', 'regions', 'min_cells', 'horizon', 'max_sequences'),
+    *('choice', 'temperature', 'aggregate'),
+)
 _SEARCHES: list[Settings] = [
     {'search': 'bfs', 'depth': 1},
     {'search': 'bfs', 'depth': 3},

@@ -30,7 +30,7 @@ from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.trials.verify import contradictions, differs_from_rerun
-from blocks_planning.worlds.observation import Observation
+from blocks_planning.worlds.observation import MAX_OBSERVATIONS, Observation
 from blocks_planning.worlds.world import Observed, Simulated, World
 
 STRATEGIES: list[Strategy] = [
@@ -185,7 +185,7 @@ def test_trials_end_at_the_most_observations(monkeypatch: pytest.MonkeyPatch, li
 def test_a_world_that_always_loses_ends_the_trial() -> None:
     record = run_trial(trial(ARCH, Scoping(), Simulated(loss=1)))
     assert record.status is TrialStatus.CANCELLED
-    assert len(record.observations) == world_part.MAX_OBSERVATIONS
+    assert len(record.observations) == MAX_OBSERVATIONS
     assert 'observations' in record.reason
     assert len(record.decisions) == 1
     assert follow(record.spec, {}).to_json() == record.to_json()
@@ -219,14 +219,15 @@ def found(data: dict[str, Any]) -> list[str]:
 def falsified() -> Iterator[tuple[str, dict[str, Any]]]:
     """Every observation as it was not drawn."""
     for sequence, seen in enumerate(LIED['observations'][1:], start=1):
-        for name, change in {
+        changes: dict[str, dict[str, Any]] = {
             'lost': {'landed': []},
             'as ordered': {'landed': [[*seen['ordered'], 0]]},
             'left': {'landed': [[*b[:2], b[2] - 1, b[3]] for b in seen['landed']]},
             'right': {'landed': [[*b[:2], b[2] + 1, b[3]] for b in seen['landed']]},
             'not ordered': {'ordered': None},
             'not there': {'gone': [[1, 2, 7, 7]]},
-        }.items():
+        }
+        for name, change in changes.items():
             if {**seen, **change} != seen:
                 data = deepcopy(LIED)
                 data['observations'][sequence] |= change
