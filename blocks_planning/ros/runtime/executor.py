@@ -94,7 +94,8 @@ class MessageExecutor(SingleThreadedExecutor):
         count = NumberOfEntities(subscriptions, guards, timers, clients, services)
         for waitable in self._node.waitables:
             count += waitable.get_num_entities()
-        with self.context.handle:  # type: ignore[union-attr]
+        handle: Any = self.context.handle
+        with handle:
             return _rclpy.WaitSet(
                 count.num_subscriptions,
                 count.num_guard_conditions,
@@ -102,7 +103,7 @@ class MessageExecutor(SingleThreadedExecutor):
                 count.num_clients,
                 count.num_services,
                 count.num_events,
-                self.context.handle,
+                handle,
             )
 
     def _handle(self, subscription: Subscription) -> None:
