@@ -54,7 +54,7 @@ SCRIPT = Parameter('script', '', 'Trial script, to count its trials; none: no co
 PARTICIPANT = Parameter('participant', '', 'Code of the person; none: as the script says.')
 PARAMETERS = (HOST, PORT, TOKEN, SCRIPT, PARTICIPANT)
 TOKEN_VARIABLE = 'BLOCKS_PLANNING_VIEW_TOKEN'
-"""A token in a process's arguments could be read by everybody on the machine."""
+"""Every user of the machine could read a token in the arguments of a process."""
 NICENESS = 10
 
 
@@ -91,7 +91,9 @@ class TrialView(PartNode):
         self.page = PageServer(address, self._mailbox, self._post)
         self._show()
         self.page.start()
-        if PARENT_VARIABLE not in os.environ:  # else who started this process says it
+        if (
+            PARENT_VARIABLE not in os.environ
+        ):  # otherwise the process that started this one prints it
             self.get_logger().info(f'the page is at {self.page.address.url}')
 
     @property
