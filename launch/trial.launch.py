@@ -1,7 +1,8 @@
 """The whole graph, for ROS installations: ros2 launch blocks_planning trial.launch.py script:=...
 
-All arguments are evaluated and checked before the first node starts, and each is a text whatever
-it looks like. The launch ends when the orchestrator has run its script; it fails if that failed.
+All arguments are evaluated and checked before the first node starts, and each is a text, also if it
+looks like a number. The launch ends when the orchestrator has run its script; it fails if the
+orchestrator failed.
 """
 
 from pathlib import Path
@@ -22,13 +23,13 @@ from launch import LaunchDescription
 
 ARGUMENTS = {
     'script': ('', 'trial script to run; empty: wait for goals on run_trial'),
-    'participant': ('', 'code of the person who scopes; empty: as the script says'),
+    'participant': ('', 'code of the person who plans; empty: as in the script'),
     'out_dir': ('trials', 'folder of trials.jsonl'),
     'bag_dir': ('', 'folder of a bag to record everything in; empty: no bag'),
     'namespace': ('', 'namespace of all nodes'),
     'peer_timeout_s': ('30.0', 'how long a node may be missing before its trial ends [s]'),
-    'markers': ('false', 'true: show the towers to RViz and Foxglove'),
-    'view': ('false', 'true: serve the page; trial_view says at which address'),
+    'markers': ('false', 'true: publish the towers for RViz and Foxglove'),
+    'view': ('false', 'true: serve the page; trial_view logs its address'),
 }
 NODES = ['world', 'subgoal_selector', 'action_searcher']
 FLAGS = {'true': True, 'false': False}

@@ -1,7 +1,7 @@
 """The ``blocks-planning`` command.
 
 Results go to stdout, progress and errors to stderr. Exit codes: 0 done, 1 a planner did not
-succeed or a record does not hold, 2 bad input, 3 a limit (of states, memory or time) was reached,
+succeed or a record is inconsistent, 2 bad input, 3 a limit (of states, memory or time) was reached,
 130 interrupted.
 """
 
@@ -31,7 +31,7 @@ INTERRUPTED = 130
 
 @click.group(
     context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 99},
-    epilog='Where to begin: blocks-planning watch cogsci2021/9',
+    epilog='To begin: blocks-planning watch cogsci2021/9',
 )
 @click.version_option(__version__, prog_name='blocks-planning')
 def commands() -> None:
@@ -74,7 +74,7 @@ def main() -> None:
     except (KeyboardInterrupt, click.Abort):
         click.echo('Interrupted.', err=True)
         code = INTERRUPTED
-    except BrokenPipeError:  # the reader of our output has seen enough
+    except BrokenPipeError:  # the reader of the output has closed it
         sys.stderr.close()
         code = 0
     _leave(code)

@@ -1,4 +1,4 @@
-"""Commands that say what is true of a tower: numbers of states, fewest blocks, arrangements."""
+"""Commands that compute exact properties of a tower: numbers of states, blocks, arrangements."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ def count(
 ) -> int:
     """Count the states that a breadth-first search evaluates.
 
-    The numbers are tree nodes at depths 1 to n, summed, for n = 1 to --depth, from the empty
-    board: what bfs evaluates when it finds nothing.
+    For each n from 1 to --depth, the number is the sum of tree nodes at depths 1 to n, from the
+    empty board: the states that bfs evaluates when it finds no complete state.
 
-    Where the time limit is reached, the numbers of the depths that were finished are printed and
-    the exit code is 3. Memory does not grow with the number of states.
+    If the time limit is reached, the numbers of the finished depths are printed and the exit code
+    is 3. Memory does not grow with the number of states.
     """
     counts = [_Counts(stimulus, library, depth) for stimulus in find_all(addresses)]
     jobs = [Job(each_count.name, each_count.run, each_count) for each_count in counts]
@@ -57,7 +57,7 @@ def count(
 
 
 class _Counts:
-    """The numbers of a tower; as text, how far they are."""
+    """The numbers of a tower; its text is the progress."""
 
     def __init__(self, stimulus: Stimulus, library: str, depth: int) -> None:
         self.name = stimulus.name
@@ -65,14 +65,14 @@ class _Counts:
         self._numbers = np.zeros(depth, np.int64)
 
     def run(self, cancel: CancelToken) -> list[int] | None:
-        """Count, until the token is used."""
+        """Count, until the token is cancelled."""
         from blocks_planning.search.compiled import count_states
 
         return count_states(self._task, len(self._numbers), cancel, self._numbers)
 
     @property
     def finished(self) -> list[int]:
-        """The numbers that are known."""
+        """The numbers of the finished depths."""
         numbers: list[int] = self._numbers.tolist()
         return numbers[: int(np.count_nonzero(self._numbers))]
 
@@ -88,11 +88,11 @@ class _Counts:
 def exact(
     addresses: tuple[str, ...], time_limit_s: float | None, library: str, as_json: bool
 ) -> int:
-    """Find the fewest blocks, and the number of arrangements, or prove that there are none.
+    """Find the fewest blocks and the number of arrangements, or prove that there are none.
 
-    The second number of arrangements is that of those with the fewest blocks. A tower that needs
-    more than 20 million states (about 1 GB of memory), or more time than the limit, is reported
-    in its row, and the exit code is 3.
+    The second number of arrangements counts those with the fewest blocks. If a tower needs more
+    than 20 million states (about 1 GB of memory), or more time than the limit, its row says so,
+    and the exit code is 3.
     """
     stimuli = find_all(addresses)
     jobs = [_exact_job(stimulus.name, task_of(stimulus, library)) for stimulus in stimuli]

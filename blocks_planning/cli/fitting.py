@@ -42,8 +42,9 @@ DEFAULT_MODELS = (
 def fit(records: tuple[Path, ...], out: Path, names: tuple[str, ...], intervals: bool) -> None:
     """Fit models of choice to the regions that people or planners chose.
 
-    Each session of the RECORDS (a participant, or the seed of a planner) is fitted alone, and all
-    together. Writes fits.csv, parameters.csv, choices.csv and figures/fit.svg and .png.
+    The command fits each session of the RECORDS (a participant, or the seed of a planner) alone,
+    and all sessions together. It writes fits.csv, parameters.csv, choices.csv and figures/fit.svg
+    and .png.
     """
     from blocks_planning.analysis.fitted import fit_figure
     from blocks_planning.analysis.style import save_figure

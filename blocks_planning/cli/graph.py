@@ -40,7 +40,7 @@ Examples:
 _PATH = click.Path(path_type=Path)
 _FRAMES_PER_S = 8
 _MOST_PICTURES = 16
-"""Of a script that has no more trials pictures are drawn unasked."""
+"""Pictures are drawn by default if a script has at most this many trials."""
 _SERVED_WITHIN_S = 60.0
 _LOOK_PERIOD_S = 0.2
 
@@ -49,31 +49,34 @@ _LOOK_PERIOD_S = 0.2
 @click.argument('script', type=_PATH)
 @click.option('--out', default='trials', show_default=True, type=_PATH, help='Folder of records.')
 @click.option('--bag', type=_PATH, help='Folder of a bag to record everything in; must not exist.')
-@click.option('--namespace', default='', help='Of all nodes.')
+@click.option('--namespace', default='', help='Namespace of all nodes.')
 @click.option('--domain', type=int, help='ROS domain, 0 to 100.  [default: a free one]')
 @click.option(
     '--pace',
     type=click.FloatRange(0, 60),
     default=0.0,
     callback=refuse_nan,
-    help='Seconds that placing a block takes, to watch it.  [default: 0]',
+    help='Seconds that a placement takes, so that it can be watched.  [default: 0]',
 )
-@click.option('--view', is_flag=True, help='Serve a page that shows it live.')
+@click.option('--view', is_flag=True, help='Serve a web page that shows the trials live.')
 @click.option(
     '--view-host',
     default='127.0.0.1',
     show_default=True,
-    help='Where the page is served; off this machine it asks for a token.',
+    help='Address to serve the page on; other than on this machine it requires a token.',
 )
 @click.option(
-    '--view-port', type=click.IntRange(0, 65535), default=0, help='[default: a free one]'
+    '--view-port',
+    type=click.IntRange(0, 65535),
+    default=0,
+    help='Port to serve the page on.  [default: a free one]',
 )
-@click.option('--participant', default='', help='Code of the person who scopes in this session.')
-@click.option('--markers', is_flag=True, help='Show the towers to RViz and Foxglove.')
+@click.option('--participant', default='', help='Code of the person who plans in this session.')
+@click.option('--markers', is_flag=True, help='Publish markers for RViz and Foxglove.')
 @click.option(
     '--pictures/--no-pictures',
     default=None,
-    help=f'Draw the first {_MOST_PICTURES} trials.  [default: if there are no more]',
+    help=f'Draw the first {_MOST_PICTURES} trials.  [default: only if the script has no more]',
 )
 def run(
     script: Path,
@@ -89,11 +92,11 @@ def run(
     markers: bool,
     pictures: bool | None,
 ) -> int:
-    """Bring up the ROS graph and run the trials of a script through it.
+    """Start the ROS graph and run the trials of a script through it.
 
-    Records go to trials.jsonl in the folder --out; trials whose records are there already are not
-    run again. Pictures of trials go to the folder pictures in it. The exit code is 1 if a tower
-    was not rebuilt perfectly.
+    Records go to trials.jsonl in the folder --out; trials that have a record there are not run
+    again. Pictures of trials go to its subfolder pictures. The exit code is 1 if a tower was not
+    rebuilt perfectly.
     """
     specs = read_script(script, participant)
     try:
@@ -101,7 +104,7 @@ def run(
     except ImportError as error:
         raise BlocksPlanningError(f'ROS 2 is not installed here: {error}') from None
     if view:
-        import_module('blocks_planning.view.web.server')  # what is missing is said now
+        import_module('blocks_planning.view.web.server')  # report a missing extra before the start
     draw = _drawing(pictures, len(specs))
     page = (view_host, view_port) if view else None
     spec = BringupSpec(script, out, bag, namespace, domain, pace, participant, markers, page)
@@ -111,7 +114,7 @@ def run(
     records.close()
     progress = _Progress(RecordTail(spec.records), len(specs), done)
     bringup = Bringup(spec)
-    click.echo(f'To look into the graph: {bringup.look_in}', err=True)
+    click.echo(f'To join the graph: {bringup.look_in}', err=True)
     if bringup.page is not None:
         click.echo(f'The page: {bringup.page.url}', err=True)
         if sys.stdin.isatty() and (os.environ.get('DISPLAY') or os.environ.get('WAYLAND_DISPLAY')):
@@ -132,7 +135,7 @@ def run(
 
 
 def _open_when_served(url: str, place: tuple[str, int]) -> None:
-    """Open a page in a browser as soon as somebody answers at its place."""
+    """Open a page in a browser as soon as its server accepts connections."""
 
     def wait() -> None:
         end = time.monotonic() + _SERVED_WITHIN_S
@@ -154,7 +157,7 @@ def _is_served(place: tuple[str, int]) -> bool:
 
 
 def _summarise(path: Path, wanted: set[str]) -> list[TrialRecord]:
-    """Print what came of the wanted trials; return their records."""
+    """Print the results of the wanted trials; return their records."""
     from blocks_planning.view.tables import print_proposals, print_summaries
 
     records = read_records(path) if path.stat().st_size else []
@@ -167,10 +170,10 @@ def _summarise(path: Path, wanted: set[str]) -> list[TrialRecord]:
 
 
 def _drawing(wanted: bool | None, trials: int) -> Callable[[list[TrialRecord], Path], None] | None:
-    """What draws the first trials into a folder; None if no pictures are wanted.
+    """A function that draws the first trials into a folder; None if no pictures are wanted.
 
     Raises:
-        MissingExtra: if pictures were asked for and what draws them is not installed.
+        MissingExtra: if pictures were requested and the extra that draws them is not installed.
     """
     if wanted is False or (wanted is None and trials > _MOST_PICTURES):
         return None
@@ -190,7 +193,7 @@ def _drawing(wanted: bool | None, trials: int) -> Callable[[list[TrialRecord], P
 
 
 class _Progress:
-    """What is shown on stderr while trials run: the tower in a terminal, else a line per trial."""
+    """Progress on stderr while trials run: the tower in a terminal, otherwise a line per trial."""
 
     def __init__(self, tail: RecordTail, total: int, done: int) -> None:
         from rich.console import Console
@@ -215,7 +218,7 @@ class _Progress:
             self._live.stop()
 
     def on_tick(self, scene: Scene | None) -> None:
-        """Time to look for news, and to draw if enough has passed since the last picture."""
+        """Read new records, and draw if enough time has passed since the last frame."""
         now = time.monotonic()
         if scene is not None and self._began is None:
             self._began = now

@@ -1,4 +1,4 @@
-"""The command that turns files of other programs into text pictures."""
+"""The command that converts files of other programs to text pictures."""
 
 from __future__ import annotations
 
@@ -32,8 +32,12 @@ Examples:
 @click.option(
     '--out', type=_PATH, help='The .txt file to write; without it towers are only shown.'
 )
-@click.option('--replace', is_flag=True, help='Write over the file if there is one.')
-@click.option('--lists', type=click.Choice(LISTS), help='What the inner lists of a grid are.')
+@click.option('--replace', is_flag=True, help='Overwrite the file if it exists.')
+@click.option(
+    '--lists',
+    type=click.Choice(LISTS),
+    help='Whether the inner lists of a grid are rows or columns.',
+)
 @click.option(
     '--y',
     'upwards',
@@ -44,9 +48,9 @@ Examples:
     '--true',
     'meaning',
     type=click.Choice(['filled', 'empty']),
-    help="What true, 1 and '#' stand for in a grid.",
+    help="Meaning of true, 1 and '#' in a grid.",
 )
-@click.option('--trim/--no-trim', default=True, show_default=True, help='Take empty margins away.')
+@click.option('--trim/--no-trim', default=True, show_default=True, help='Remove empty margins.')
 def import_towers(
     paths: tuple[Path, ...],
     out: Path | None,
@@ -60,9 +64,9 @@ def import_towers(
 
     A JSON file holds block lists, {"blocks": [{"x": 0, "y": 0, "width": 2, "height": 1}]} with y
     upwards, or grids, [[0, 1], [1, 1]] with the top row first, or lists or objects of them. A grid
-    of booleans is a map: map[x][y] is true where nothing is, with y upwards. A CSV file holds
-    grids, with blank lines between them. Every tower is shown as it was understood: if it lies on
-    its side or on its head, say --lists or --y.
+    of booleans is a map: map[x][y] is true where the cell is empty, with y upwards. A CSV file holds
+    grids, with blank lines between them. The command shows every tower as it read it: if a tower
+    is on its side or upside down, set --lists or --y.
     """
     inverted = None if meaning is None else meaning == 'empty'
     reading = Reading(lists, upwards, inverted, trim)
@@ -102,14 +106,14 @@ def write_towers(out: Path, replace: bool, text: str) -> None:
     """Write a file of text pictures.
 
     Raises:
-        ConfigurationError: if it can't be written, or is there and may not be replaced.
+        ConfigurationError: if it cannot be written, or exists and may not be replaced.
     """
     try:
         with out.open('w' if replace else 'x', encoding='utf-8') as file:
             file.write(text)
     except FileExistsError:
         raise ConfigurationError(
-            f'--out {out}: there is such a file; add --replace to write over it'
+            f'--out {out}: the file exists; add --replace to overwrite it'
         ) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, 'strerror', None) or error

@@ -1,4 +1,4 @@
-"""Commands that look at records."""
+"""Commands that check and draw records."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _RECORD = click.Path(path_type=Path, exists=False)
 def verify(paths: tuple[Path, ...], rerun: bool) -> int:
     """Replay the placements of records through the rules, and recompute their decisions.
 
-    A RECORD is a file of records, or a bag: its trials are rebuilt from the messages alone, and
-    held against what was said at their end. A bag that was cut off is repaired first.
+    A RECORD is a file of records, or a bag. The trials of a bag are rebuilt from its messages
+    alone, and compared with their recorded outcomes. A truncated bag is repaired first.
 
-    The exit code is 1 if something in a record does not follow from the rest.
+    The exit code is 1 if a record is inconsistent.
     """
     from blocks_planning.trials.verify import differs_from_rerun
 
@@ -57,7 +57,7 @@ _Complaints = Iterator[tuple[TrialRecord | None, Iterable[str]]]
 
 
 def _complaints_of_file(path: Path) -> _Complaints:
-    """The records of a file, each with what does not hold."""
+    """The records of a file, each with its contradictions."""
     from blocks_planning.trials.verify import contradictions
 
     for record in read_records(path):
@@ -65,7 +65,7 @@ def _complaints_of_file(path: Path) -> _Complaints:
 
 
 def _complaints_of_bag(path: Path) -> _Complaints:
-    """The records of a bag, each with what does not hold; None for what belongs to no record."""
+    """The records of a bag, each with its contradictions; None for those of no record."""
     bags = _import_bags(path)
     for repair in bags.repair(path):
         click.echo(repair)
@@ -86,17 +86,17 @@ def _is_bag(path: Path) -> bool:
 
 
 def _import_bags(path: Path) -> ModuleType:
-    """What reads bags.
+    """The module that reads bags.
 
     Raises:
-        ConfigurationError: if the interfaces, or what reads MCAP, are not installed.
+        ConfigurationError: if the interfaces, or the MCAP reader, are not installed.
     """
     try:
         from blocks_planning.ros.bagging import bags
     except ModuleNotFoundError as error:
         missing = str(error.name).partition('.')[0]
         raise ConfigurationError(
-            f'{path}: is a bag, and to read it {missing} has to be installed'
+            f'{path}: this is a bag; reading it needs {missing}, which is not installed'
         ) from None
     return bags
 
@@ -108,9 +108,9 @@ def _import_bags(path: Path) -> ModuleType:
 )
 @click.argument('path', metavar='RECORD', type=_RECORD)
 @click.option('--out', required=True, type=_RECORD, help='A .png, .svg, .pdf or .gif file.')
-@click.option('--record', 'number', type=click.IntRange(1), help='Which one of several, from 1.')
+@click.option('--record', 'number', type=click.IntRange(1), help='Number of the record, from 1.')
 def draw(path: Path, out: Path, number: int | None) -> None:
-    """Draw the tower of a record, or of a trial in a bag; as .gif, block by block."""
+    """Draw the tower of a record, or of a trial in a bag; a .gif shows it block by block."""
     from blocks_planning.view.picture import save_picture
 
     if _is_bag(path):
@@ -122,9 +122,9 @@ def draw(path: Path, out: Path, number: int | None) -> None:
 
 def _one_of(records: list[TrialRecord], path: Path, number: int | None) -> TrialRecord:
     if number is None and len(records) > 1:
-        raise RecordError(f'{path}: has {len(records)} records; say which with --record')
+        raise RecordError(f'{path}: has {len(records)} records; choose one with --record')
     if number is not None and number > len(records):
-        raise RecordError(f'{path}: has {len(records)} records, there is no record {number}')
+        raise RecordError(f'{path}: has {len(records)} records; --record {number} is out of range')
     if not records:
         raise RecordError(f'{path}: has no trial')
     return records[(number or 1) - 1]

@@ -1,4 +1,4 @@
-"""Work that Ctrl-C or a time limit ends at once, and in good order."""
+"""Work that Ctrl-C or a time limit ends at once, and cleanly."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class Ended(NamedTuple, Generic[T]):
 
 
 class _Work(threading.Thread, Generic[T]):
-    """A thread that keeps what a function returned or raised.
+    """A thread that stores the result or the exception of a function.
 
-    Python looks at signals between the steps of the main thread, and a search is one step; so
-    the search runs here, and the main thread waits for it.
+    Python handles signals between bytecodes of the main thread, and a compiled search is one
+    call; so the search runs here, and the main thread waits for it.
     """
 
     def __init__(self, function: Callable[[], T]) -> None:
@@ -45,16 +45,16 @@ class _Work(threading.Thread, Generic[T]):
     def run(self) -> None:
         try:
             self._result = self._function()
-        except BaseException as error:  # noqa: BLE001  raised again where it is waited for
+        except BaseException as error:  # noqa: BLE001  raised again in wait()
             self._error = error
         self._ended.set()
 
     def ends_within(self, duration_s: float) -> bool:
-        """Wait, but not longer than that; return whether the function has ended."""
+        """Wait for at most a duration [s]; return whether the function has ended."""
         return self._ended.wait(duration_s)
 
     def wait(self) -> T:
-        """What the function returned."""
+        """Wait, and return the result of the function, or raise its exception."""
         self._ended.wait()  # a join() that was interrupted once would not wait again
         if self._error is not None:
             raise self._error
@@ -69,9 +69,9 @@ def supervised(
     """Call a function; cancel its token on the first Ctrl-C, or when the time limit is reached.
 
     Args:
-        function: called in a thread of its own; it has to return soon once its token is used.
-        tick: called now and then in this thread while the function runs.
-        time_limit_s: most time that the function may take [s]; None for any.
+        function: called in its own thread; it must return soon after its token is cancelled.
+        tick: called every ``TICK_S`` in this thread while the function runs.
+        time_limit_s: time limit of the function [s]; None for no limit.
     """
     cancel = CancelToken()
     work = _Work(lambda: function(cancel))
@@ -90,7 +90,7 @@ def supervised(
 
 
 def interruptible(function: Callable[[CancelToken], T]) -> tuple[T, bool]:
-    """Call a function; on the first Ctrl-C cancel its token, and wait for what it returns then.
+    """Call a function; on the first Ctrl-C cancel its token, and wait for its result.
 
     Returns:
         (what the function returned, whether it was interrupted)

@@ -27,39 +27,53 @@ Examples:
 
 @click.command('make', epilog=_EXAMPLES)
 @click.option('--out', required=True, type=click.Path(path_type=Path), help='The .txt file.')
-@click.option('--replace', is_flag=True, help='Write over files if there are any.')
+@click.option('--replace', is_flag=True, help='Overwrite existing files.')
 @click.option(
-    '--count', type=click.IntRange(1, 1_000), default=8, show_default=True, help='Towers.'
+    '--count',
+    type=click.IntRange(1, 1_000),
+    default=8,
+    show_default=True,
+    help='Number of towers, in each set.',
 )
-@click.option('--size', default='8x8', show_default=True, help='WIDTHxHEIGHT [cells].')
-@click.option('--drop', default='6-10', show_default=True, help='Blocks that are dropped.')
+@click.option(
+    '--size', default='8x8', show_default=True, help='Board size, as WIDTHxHEIGHT [cells].'
+)
+@click.option(
+    '--drop', default='6-10', show_default=True, help='Number of blocks to drop, as a range.'
+)
 @click.option(
     '--solvable/--unsolvable',
     default=True,
     show_default=True,
-    help='Whether the library can rebuild the towers.',
+    help='Whether the library must be able to rebuild the towers.',
 )
 @click.option(
     '--want',
     'wishes',
     multiple=True,
     metavar='NAME=RANGE',
-    help='A measure and 3, 3-5, 3- or -5; may be given several times.',
+    help='Wanted range of a measure: 3, 3-5, 3- or -5; may be given several times.',
 )
 @click.option(
     '--trials',
     type=click.IntRange(1, 10_000),
     default=8,
     show_default=True,
-    help='Trials of scoping with bfs that measure cost and success, if they are wanted.',
+    help='Trials of scoping with bfs that measure cost and success, if these are used.',
 )
 @click.option(
-    '--sets', type=click.IntRange(1, 100), default=1, show_default=True, help='Sets of --count.'
+    '--sets', type=click.IntRange(1, 100), default=1, show_default=True, help='Number of sets.'
 )
-@click.option('--balance', metavar='NAMES', help='Measures whose means are alike in all sets.')
-@click.option('--seed', type=click.IntRange(0), default=0, show_default=True)
+@click.option('--balance', metavar='NAMES', help='Measures whose means are balanced across sets.')
 @click.option(
-    '--tries', type=click.IntRange(1), default=2_000, show_default=True, help='Per tower.'
+    '--seed', type=click.IntRange(0), default=0, show_default=True, help='Seed of the generator.'
+)
+@click.option(
+    '--tries',
+    type=click.IntRange(1),
+    default=2_000,
+    show_default=True,
+    help='Most candidates that are tried per tower.',
 )
 @library_option
 def make_command(
@@ -77,10 +91,10 @@ def make_command(
     tries: int,
     library: str,
 ) -> None:
-    """Make random towers with wanted properties and write them as text pictures.
+    """Generate random towers with wanted properties and write them as text pictures.
 
-    Every tower has its measures above it as a comment. The same options give the same towers.
-    With --sets, a file is written for each set: NAME-1.txt, NAME-2.txt, ...
+    A comment above every tower lists its measures. The same options give the same towers. With
+    --sets, each set has its own file: NAME-1.txt, NAME-2.txt, ...
 
     Measures: cells, width, height, holes, hole_cells, overhangs, covered_cells, roughness; blocks,
     arrangements, optimal (exact); cost [states], success (of a planner).

@@ -1,4 +1,4 @@
-"""Options that commands share, and what they are turned into."""
+"""Options that commands share, and the conversion of their values."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ DEFAULTS = {'strategy': 'scoping', 'search': 'bfs', 'world': 'simulated'}
 _FAMILY_HELP = {
     'strategy': 'Subgoal planner.',
     'search': 'Action-level search.',
-    'world': 'What becomes of orders.',
+    'world': 'World that executes the orders.',
 }
 _TYPES: dict[type, Any] = {
     bool: click.BOOL,
@@ -46,7 +46,7 @@ def _decides_alone(cls: type[Any]) -> bool:
 
 
 def planner_options(command: Command) -> Command:
-    """Add the options that name planner, world and seed; :func:`specs_of` reads them."""
+    """Add the options for planner, world and seed; :func:`specs_of` reads them."""
     for option in reversed([*_family_options(), *_TRIAL_OPTIONS]):
         command = option(command)
     return command
@@ -83,7 +83,7 @@ _TRIAL_OPTIONS: tuple[Decorator, ...] = (
         type=int,
         default=DEFAULT_BUDGET,
         show_default=True,
-        help='States after which a solve begins no further attempt; 0 for a single attempt.',
+        help='States evaluated after which a solve starts no further attempt; 0: one attempt.',
     ),
     click.option('--seed', type=int, default=0, show_default=True, help='Seed for tie-breaking.'),
     library_option,
@@ -125,7 +125,7 @@ def specs_of(addresses: tuple[str, ...], seeds: int, options: dict[str, Any]) ->
 
 
 def refuse_nan(_: click.Context, __: click.Parameter, number: float) -> float:
-    """Refuse the number that no range of numbers leaves out."""
+    """Refuse NaN, which passes every range check."""
     if number != number:
-        raise click.BadParameter('nan is not a number of seconds')
+        raise click.BadParameter('expected a number of seconds, got nan')
     return number

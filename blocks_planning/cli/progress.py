@@ -1,11 +1,11 @@
-"""Long work on the command line: progress, time limits, and towers that outgrow a limit.
+"""Long work on the command line: progress, time limits, and towers that reach a limit.
 
-After 2 s of work a terminal shows on stderr, on one line that is drawn again and again, what is
-being worked on and how far it is. Anything else, such as a log file, gets a line after 30 s, 1, 2
-and 4 minutes, and then every 5 minutes.
+After 2 s of work a terminal shows the current job and its progress on stderr, on one line that is
+redrawn. If stderr is not a terminal (a log file, say), a line is printed after 30 s, 1, 2 and 4
+minutes, and then every 5 minutes.
 
-A tower that reaches a limit (of states, of memory, or of time) does not end the others: its row
-says what happened, and the command ends with exit code ``LIMIT_REACHED``.
+A tower that reaches a limit (of states, memory or time) does not end the others: its row names the
+limit, and the command ends with exit code ``LIMIT_REACHED``.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from blocks_planning.cli.interrupt import supervised
 from blocks_planning.errors import ConfigurationError, LimitExceeded
 from blocks_planning.search.result import CancelToken
 
-if TYPE_CHECKING:  # rich is imported where it is used: --help has to come at once
+if TYPE_CHECKING:  # rich is imported where it is used, so that --help is fast
     from rich.console import Console
     from rich.live import Live
 
@@ -31,9 +31,9 @@ T = TypeVar('T')
 LIMIT_REACHED = 3
 """Exit code of a command in which a tower reached a limit."""
 QUIET_S = 2.0
-"""How long work is done in a terminal without showing progress [s]."""
+"""Duration of work before a terminal shows progress [s]."""
 FIRST_LINE_S = 30.0
-"""How long work is done without a line on progress where stderr is no terminal [s]."""
+"""Duration of work before the first line of progress if stderr is not a terminal [s]."""
 _REDRAW_S = 0.1
 _LONGEST_SILENCE_S = 300.0
 
@@ -50,15 +50,15 @@ time_limit_option = click.option(
     type=float,
     metavar='SECONDS',
     callback=_check_time,
-    help='Most time for each tower; what is not finished by then is reported, and the next begins.',
+    help='Time limit for each tower; an unfinished tower is reported, and the next one begins.',
 )
 
 
 class Progress:
-    """Shows how far work is, once it takes longer than 2 s."""
+    """Shows the progress of work that takes longer than 2 s."""
 
     def __init__(self, console: Console | None = None) -> None:
-        """Nothing is shown yet; the clock starts."""
+        """Start the clock; show nothing yet."""
         from rich.console import Console
 
         self._console = console or Console(stderr=True)
@@ -67,7 +67,7 @@ class Progress:
         self._live: Live | None = None
 
     def show(self, describe: Callable[[], str]) -> None:
-        """Show a line if it is time for one; ``describe`` is called only then."""
+        """Show a line if one is due; ``describe`` is called only then."""
         now = monotonic()
         passed = now - self._began
         if not (self._console.is_terminal and self._console.is_interactive):
@@ -79,13 +79,13 @@ class Progress:
             self._draw(describe())
 
     def hide(self) -> None:
-        """Take the line away, so that something else can be printed."""
+        """Remove the line, so that other output can be printed."""
         if self._live is not None:
             self._live.stop()
             self._live = None
 
     def say(self, line: str) -> None:
-        """Print a line that stays."""
+        """Print a permanent line."""
         self.hide()
         self._say(line)
 
@@ -118,8 +118,8 @@ class Job(Generic[T]):
 
     Attributes:
         name: of the tower.
-        work: does it; given a token that ends it early.
-        gauge: its text says how far the work is.
+        work: function that does it; its argument is a token that ends it early.
+        gauge: its text is the progress of the work.
     """
 
     name: str
@@ -128,13 +128,13 @@ class Job(Generic[T]):
 
 
 class Outcome(NamedTuple, Generic[T]):
-    """What became of a job.
+    """The outcome of a job.
 
     Attributes:
         name: of the tower.
-        result: of the work; None if it outgrew a limit.
+        result: of the work; None if it exceeded a limit.
         problem: the limit that it reached; '' if it was finished.
-        took_s: time that it took [s].
+        took_s: duration [s].
     """
 
     name: str
@@ -150,17 +150,17 @@ def each(
     time_limit_s: float | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Outcome[T]]:
-    """Do jobs one after the other and hand out each outcome as soon as it is there.
+    """Run jobs one after the other and yield each outcome as soon as it is known.
 
     Args:
-        what: is being done, for the line of progress.
+        what: name of the activity, for the line of progress.
         jobs: in order.
         total: their number.
-        time_limit_s: most time for each [s].
-        progress: where it is shown; made if left out.
+        time_limit_s: time limit of each job [s].
+        progress: display of the progress; a new one by default.
 
     Raises:
-        KeyboardInterrupt: on Ctrl-C, after the outcome of the job that it ended if it has a result.
+        KeyboardInterrupt: on Ctrl-C, after the outcome of the interrupted job if it has a result.
     """
     progress = progress or Progress()
     try:
@@ -203,7 +203,7 @@ def _outcome(
     describe: Callable[[], str],
     time_limit_s: float | None,
 ) -> tuple[Outcome[T], bool]:
-    """What becomes of a job, and whether it was interrupted."""
+    """The outcome of a job, and whether it was interrupted."""
     try:
         ended = supervised(job.work, lambda: progress.show(describe), time_limit_s)
     except LimitExceeded as error:
@@ -218,7 +218,7 @@ def _outcome(
 def bar(what: str) -> Iterator[Callable[[int, int], None]]:
     """A bar on stderr with rate and time left, if it is a terminal; yields its setter.
 
-    Elsewhere a line is printed now and then, as :class:`Progress` does.
+    Otherwise lines are printed as by :class:`Progress`.
     """
     from rich.console import Console
     from rich.progress import (

@@ -1,4 +1,4 @@
-"""Commands that run whole studies: the paper's, and how costs grow with the board."""
+"""Commands that run whole studies: that of the paper, and the growth of costs with the board."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 
 @click.command(epilog='\b\nExample:\n  blocks-planning reproduce --out results')
 @out_option
-@click.option('--quick', is_flag=True, help='Few seeds and values of lambda: a look in seconds.')
+@click.option('--quick', is_flag=True, help='Use few seeds and values of lambda; takes seconds.')
 @workers_option
 def reproduce(out: Path, quick: bool, workers: int | None) -> int:
     """Run every experiment of the paper and write report.html and results.json.
 
-    Figures and tables of all trials are beside them. Interrupted and started again it goes on
-    where it stopped. The exit code is 1 if a trial could not be run.
+    Figures and tables of all trials are written beside them. After an interruption, the same
+    command continues. The exit code is 1 if a trial could not be run.
     """
     from blocks_planning.analysis.comparing import count_verdicts
     from blocks_planning.analysis.report import write_report
@@ -71,7 +71,7 @@ def reproduce(out: Path, quick: bool, workers: int | None) -> int:
 
 
 _QUICK_TOWERS = 4
-"""Towers, the last ones, whose sizes a quick run counts: some take seconds."""
+"""Number of towers, the last ones, whose sizes a quick run counts: some take seconds."""
 _QUICK = (
     'This is a quick run: few seeds, few values of lambda. Its numbers show that everything works, '
     'and say little about the paper.'
@@ -80,16 +80,25 @@ _QUICK = (
 
 @click.command(epilog='\b\nExample:\n  blocks-planning growth --out growth')
 @out_option
-@click.option('--towers', type=click.IntRange(1), default=8, show_default=True, help='Per size.')
-@click.option('--seeds', type=click.IntRange(1), default=2, show_default=True, help='Per tower.')
 @click.option(
-    '--largest', type=click.IntRange(6, 16), default=16, show_default=True, help='Side [cells].'
+    '--towers', type=click.IntRange(1), default=8, show_default=True, help='Towers per size.'
+)
+@click.option(
+    '--seeds', type=click.IntRange(1), default=2, show_default=True, help='Trials per tower.'
+)
+@click.option(
+    '--largest',
+    type=click.IntRange(6, 16),
+    default=16,
+    show_default=True,
+    help='Largest side of a board [cells].',
 )
 @workers_option
 def growth(out: Path, towers: int, seeds: int, largest: int, workers: int | None) -> int:
     """Measure how the states evaluated grow with the board, on generated towers.
 
-    Writes growth.json with fits, figures/growth.svg and .png, and the tables of all trials.
+    The command writes growth.json with fits, figures/growth.svg and .png, and the tables of all
+    trials.
     """
     from blocks_planning.analysis.growth import (
         LEAST_SIDES,
@@ -105,8 +114,8 @@ def growth(out: Path, towers: int, seeds: int, largest: int, workers: int | None
     sides = tuple(side for side in SIDES if side <= largest)
     if len(sides) < LEAST_SIDES:
         raise ConfigurationError(
-            f'--largest {largest}: leaves the sizes {", ".join(map(str, sides))}, and a law needs '
-            f'at least {LEAST_SIDES}; use {SIDES[LEAST_SIDES - 1]} or more'
+            f'--largest {largest}: leaves the sizes {", ".join(map(str, sides))}; a fit needs '
+            f'at least {LEAST_SIDES} sizes; use {SIDES[LEAST_SIDES - 1]} or more'
         )
     with bar('Trials') as report:
         summary = run_sweep(
@@ -138,14 +147,22 @@ def _law_of(fit: dict[str, Any] | None) -> str:
 )
 @stimuli_argument
 @click.option('--search', type=click.Choice(['bfs', 'random']), default='bfs', show_default=True)
-@click.option('--depth', type=click.IntRange(1, 64), help='Placements that bfs looks ahead (3).')
-@click.option('--budget', type=int, default=DEFAULT_BUDGET, show_default=True, help='b [states].')
+@click.option(
+    '--depth', type=click.IntRange(1, 64), help='Placements that bfs looks ahead.  [default: 3]'
+)
+@click.option(
+    '--budget',
+    type=int,
+    default=DEFAULT_BUDGET,
+    show_default=True,
+    help='Budget b of a solve [states].',
+)
 @click.option(
     '--limit',
     type=click.IntRange(1),
     default=2_000_000,
     show_default=True,
-    help='Most states to look at.',
+    help='Most states to examine per tower.',
 )
 @click.option(
     '--slip',
@@ -171,13 +188,13 @@ def exact_policy(
     library: str,
     as_json: bool,
 ) -> int:
-    """Compute what bfs or random achieves on a tower, without sampling.
+    """Compute the success and cost of bfs or random on a tower, without sampling.
 
-    Success and expected cost of one attempt, and success of attempt after attempt within the
-    budget. A tower that needs more states than the limit, or more memory (640 MB for costs) or
-    time, is reported in its row, and the exit code is 3. With --slip: in a world where blocks
-    slip, the highest chance of success that any policy can reach, and that of one attempt of bfs
-    and of random.
+    The output has the success and expected cost of one attempt, and the success of repeated
+    attempts within the budget. If a tower needs more states than the limit, or more memory (640 MB
+    for costs) or time, its row says so, and the exit code is 3. With --slip, the output has the
+    highest success of any policy in a world where blocks slip, and the success of one attempt of
+    bfs and of random.
     """
     if slips:
         from blocks_planning.cli.slipping import print_slips
@@ -185,7 +202,7 @@ def exact_policy(
         given = [name for name in ('search', 'budget') if is_given(context, name)]
         if given:
             raise click.UsageError(
-                f'--slip compares all policies by one attempt; leave out --{given[0]}'
+                f'--slip compares all policies by one attempt; remove --{given[0]}'
             )
         tasks = [(one.name, task_of(one, library)) for one in find_all(addresses)]
         return print_slips(tasks, slips, depth, limit, as_json)
@@ -225,5 +242,5 @@ def _policy_in_words(found: ExactPolicy) -> str:
 
 
 def is_given(context: click.Context, name: str) -> bool:
-    """Whether an option was written on the command line."""
+    """Whether an option was given on the command line."""
     return context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT

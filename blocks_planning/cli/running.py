@@ -67,8 +67,8 @@ def solve(
 ) -> int:
     """Run trials and print a table, or a record per line.
 
-    The exit code is 1 if a tower was not rebuilt perfectly, and 3 if a trial was ended by the time
-    limit, or a search outgrew its memory (1 GB).
+    The exit code is 1 if a tower was not rebuilt perfectly, and 3 if the time limit ended a trial
+    or a search exceeded its memory (1 GB).
     """
     specs = specs_of(addresses, seeds, options)
     records = []
@@ -120,8 +120,8 @@ def _run_all(
 ) -> Iterator[tuple[TrialRecord, str]]:
     """Run trials in order; each with the limit that it reached, or ''.
 
-    An interrupted trial is handed out too, as cancelled. What takes long is said on stderr when
-    it is done, as the table is printed only at the end.
+    An interrupted trial is yielded too, as cancelled. Long trials are reported on stderr as they
+    end, because the table is printed only at the end.
     """
     progress = Progress()
     jobs = (_job_of(spec) for spec in specs)
@@ -143,14 +143,14 @@ def _job_of(spec: TrialSpec) -> Job[TrialRecord]:
 
 
 class _Watched:
-    """A trial that says as text how far it is."""
+    """A trial whose text is its progress."""
 
     def __init__(self, spec: TrialSpec) -> None:
         self._spec = spec
         self._blocks = self._states = 0
 
     def run(self, cancel: CancelToken) -> TrialRecord:
-        """Run it, until the token is used."""
+        """Run it, until the token is cancelled."""
         from blocks_planning.trials.local import run_trial
 
         return run_trial(self._spec, cancel, self._observe)
@@ -166,7 +166,7 @@ class _Watched:
 
 
 def _memory_limit_of(record: TrialRecord) -> str:
-    """What to say of a trial that ended because a search outgrew its memory, or ''."""
+    """The message for a trial that ended because a search exceeded its memory, or ''."""
     if not ended_at_a_limit(record):
         return ''
     return f'a region is too large for the memory of {record.spec.search.name}'

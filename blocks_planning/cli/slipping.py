@@ -1,4 +1,4 @@
-"""What ``exact-policy --slip`` computes and prints."""
+"""Computation and output of ``exact-policy --slip``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from blocks_planning.search.searches import BreadthFirst
 from blocks_planning.search.slipping import SlipChances, analyse_slips
 
 _MOST_AT_ONCE = 2
-"""Towers that are analysed at the same time; each takes up to 0.5 GB."""
+"""Number of towers that are analysed at the same time; each takes up to 0.5 GB."""
 
 
 def print_slips(
@@ -34,7 +34,7 @@ def print_slips(
         return analyse_slips(Problem(task, 0, task.silhouette), slips, search, limit, cancel)
 
     def work(cancel: CancelToken) -> bool:
-        """All towers, in threads: kernels run without the GIL. False if cancelled."""
+        """Analyse all towers, in threads: kernels run without the GIL. False if cancelled."""
         workers = min(_MOST_AT_ONCE, os.cpu_count() or 1)
         with ThreadPoolExecutor(workers) as pool, bar('Towers') as report:
             waiting = [(name, pool.submit(analyse, task, cancel)) for name, task in tasks]

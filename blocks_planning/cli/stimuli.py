@@ -1,4 +1,4 @@
-"""Commands that look at silhouettes and make files of them."""
+"""Commands that show, import and generate silhouettes."""
 
 from __future__ import annotations
 

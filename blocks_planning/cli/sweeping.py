@@ -16,10 +16,12 @@ _PATH = click.Path(path_type=Path, exists=False)
 _SHOWN_FAILURES = 5
 
 out_option = click.option(
-    '--out', required=True, type=_PATH, help='The folder that results are written to.'
+    '--out', required=True, type=_PATH, help='Folder that results are written to.'
 )
 workers_option = click.option(
-    '--workers', type=click.IntRange(1), help='Processes of this machine (one per processor).'
+    '--workers',
+    type=click.IntRange(1),
+    help='Number of processes on this machine.  [default: one per processor]',
 )
 
 
@@ -34,8 +36,8 @@ workers_option = click.option(
 def sweep(spec: str, out: Path, workers: int | None, dask: str | None) -> int:
     """Run all trials of a specification and write tables of them as Parquet files.
 
-    Interrupted and started again it goes on where it stopped. The exit code is 1 if a trial
-    could not be run; its row in the table of trials says why.
+    After an interruption, the same command continues. The exit code is 1 if a trial could not be
+    run; its row in the table of trials has the reason.
     """
     from blocks_planning.experiments.reading import find_sweep, read_sweep
     from blocks_planning.experiments.running import default_workers
@@ -49,7 +51,7 @@ def sweep(spec: str, out: Path, workers: int | None, dask: str | None) -> int:
 
 
 def print_summary(summary: Summary, out: Path) -> None:
-    """Say how a sweep ended: to stdout, and to stderr what failed."""
+    """Print the results of a sweep to stdout, and its failures to stderr."""
     listed = ', '.join(f'{count} {status}' for status, count in sorted(summary.statuses.items()))
     click.echo(f'{out}: {summary.trials} trials: {listed}')
     for error, count in list(summary.failures.items())[:_SHOWN_FAILURES]:

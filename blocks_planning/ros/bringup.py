@@ -1,4 +1,4 @@
-"""The whole graph as processes: brought up for a script, kept alive, and taken down."""
+"""The whole graph as processes: started for a script, kept alive, and stopped."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _SPIN_S = 0.05
 
 @dataclass(frozen=True)
 class BringupSpec:
-    """What to bring up.
+    """The graph to start.
 
     Attributes:
         script: of the trials.
@@ -40,7 +40,7 @@ class BringupSpec:
         namespace: of all nodes, '' for none.
         domain: ROS domain; None for a free one.
         placing_s: how long placing a block takes [s].
-        participant: code of the person who scopes, '' for what the script says.
+        participant: code of the person who plans, '' for that of the script.
         markers: whether the tower is shown as markers, for RViz and Foxglove.
         view: host and port of the page, port 0 for a free one; None for no page.
     """
@@ -62,7 +62,7 @@ class BringupSpec:
 
 
 class Bringup:
-    """A graph of processes, and a node here that watches it."""
+    """A graph of processes, and a node in this process that watches it."""
 
     def __init__(self, spec: BringupSpec) -> None:
         """Prepare; nothing is started yet."""
@@ -87,7 +87,7 @@ class Bringup:
 
     @property
     def look_in(self) -> str:
-        """What to type in another terminal so that its ROS commands see this graph."""
+        """The command for another terminal, so that its ROS commands see this graph."""
         names = sorted(self._domain.environment({}).keys() - {'AMENT_PREFIX_PATH'})
         return ' '.join(['export', *(f'{name}={self._environment[name]}' for name in names)])
 
@@ -138,7 +138,7 @@ class Bringup:
         Of this process, rclpy stays up: see :func:`blocks_planning.ros.runtime.process.leave_if_up`.
 
         Args:
-            on_tick: called some times a second with what there is to see.
+            on_tick: called several times a second with the current scene.
 
         Returns:
             The exit code of the orchestrator: 0 if every tower was rebuilt, 1 if not.

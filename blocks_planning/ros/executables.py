@@ -1,8 +1,8 @@
-"""What ``ros2 run`` starts: one function per node.
+"""The executables of ``ros2 run``: one function per node.
 
-Importing a node takes a while (rclpy, numba), and a signal during that would end in a traceback.
-So this module imports next to nothing, and until a node has handlers of its own a signal just
-ends the process: there is nothing to take down yet.
+Importing a node takes a while (rclpy, numba), and a signal during the import would end in a
+traceback. So this module imports almost nothing. Until a node has its own handlers a signal just
+ends the process; there is nothing to shut down yet.
 """
 
 from __future__ import annotations

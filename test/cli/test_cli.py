@@ -560,8 +560,8 @@ def test_draw_makes_a_picture(run: Run, records: Path, name: str, begins: bytes)
 @pytest.mark.parametrize(
     ('options', 'words'),
     [
-        ('--out {0}/x.png', 'has 8 records; say which with --record'),
-        ('--out {0}/x.png --record 9', 'has 8 records, there is no record 9'),
+        ('--out {0}/x.png', 'has 8 records; choose one with --record'),
+        ('--out {0}/x.png --record 9', 'has 8 records, --record 9 is out of range'),
         ('--out {0}/x.png --record 0', '0 is not in the range'),
         ('--out {0}/x.bmp --record 1', '.bmp'),
         ('--out {0}/x --record 1', 'suffix'),

@@ -56,7 +56,7 @@ def test_a_file_is_not_written_over_unless_one_says_so(
 ) -> None:
     (folder / 'towers.txt').write_text('mine')
     assert call(monkeypatch, 'gate.json', '--out', 'towers.txt') == 2
-    assert '--out towers.txt: there is such a file; add --replace' in capsys.readouterr().err
+    assert '--out towers.txt: the file exists; add --replace' in capsys.readouterr().err
     assert (folder / 'towers.txt').read_text() == 'mine'
     assert call(monkeypatch, 'gate.json', '--out', 'towers.txt', '--replace') == 0
     assert list(read_file(folder / 'towers.txt')) == ['gate']

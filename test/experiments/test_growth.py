@@ -66,7 +66,7 @@ def test_too_few_sizes_are_refused_before_anything_runs(tmp_path: Path) -> None:
     command = [sys.executable, '-m', 'blocks_planning.cli', 'growth', '--out', str(tmp_path / 'x')]
     done = subprocess.run([*command, '--largest', '7'], capture_output=True, text=True)
     assert done.returncode == 2
-    assert '--largest 7: leaves the sizes 4, 6, and a law needs at least 3' in done.stderr
+    assert '--largest 7: leaves the sizes 4, 6; a fit needs at least 3 sizes' in done.stderr
     assert not (tmp_path / 'x').exists()
 
 

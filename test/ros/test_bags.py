@@ -703,7 +703,7 @@ def test_without_ros_one_line_says_what_is_missing(missing: str, bag: Path) -> N
         'from blocks_planning.cli import main; main()'
     )
     done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, timeout=60)
-    expected = f'Error: {bag}: is a bag, and to read it {missing} has to be installed\n'
+    expected = f'Error: {bag}: this is a bag; reading it needs {missing}, which is not installed\n'
     assert (done.returncode, done.stdout, done.stderr) == (2, '', expected)
 
 

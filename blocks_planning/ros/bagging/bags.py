@@ -37,7 +37,7 @@ _FROM_ROS: dict[str, Callable[[Board, Any], Message]] = {
 }
 _KINDS = (_TRIAL, _OUTCOME, *_FROM_ROS)
 _MOST_OPEN = 8
-"""So many trials later, no further message of a trial comes. (Topics are not ordered.)"""
+"""Number of later trials after which no message of a trial is expected. (Topics are not ordered.)"""
 _VERSION1 = (
     'blocks',
     'subgoals',
@@ -45,12 +45,12 @@ _VERSION1 = (
     'subgoal_planning_cost',
     'solution_cost',
 )
-"""What the outcome of version 1 has of a record's summary."""
+"""The fields of a record's summary in an outcome of version 1."""
 
 
 @dataclass
 class _Heard:
-    """What a bag has of a trial so far."""
+    """The messages of a trial in a bag so far."""
 
     memory: scribe.Memory
     file: int
@@ -156,7 +156,7 @@ class _Listener:
 
 
 def _ignore(_: str) -> None:
-    """Say nothing."""
+    """Ignore a sentence."""
 
 
 def trials_of(bag: Path, refuse: Callable[[str], None] | None = None) -> Iterator[RecordedTrial]:
@@ -164,11 +164,11 @@ def trials_of(bag: Path, refuse: Callable[[str], None] | None = None) -> Iterato
 
     Args:
         bag: a directory, or a single file of one.
-        refuse: is told, in a sentence each, of impossible messages; every node ignored them, and
-            so does the record.
+        refuse: called with a sentence for each impossible message; all nodes ignored it, and so
+            does the record.
 
     Raises:
-        BagError: if the bag can't be read, or was cut off and has to be repaired first.
+        BagError: if the bag can't be read, or is truncated and has to be repaired first.
     """
     tell = refuse or _ignore
     listener = _Listener(tell)

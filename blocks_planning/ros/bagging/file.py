@@ -1,4 +1,4 @@
-"""One file of a bag: messages in MCAP, written so that a cut loses what was not flushed only."""
+"""One file of a bag: messages in MCAP, written so that a crash loses only unflushed messages."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _MESSAGE_OVERHEAD = 31  # [bytes]
 
 
 class _Outbox:
-    """The end of a file that is not on disk yet. What a full disk refuses goes on waiting."""
+    """The end of a file that is not on disk yet; bytes that a full disk refuses stay in memory."""
 
     def __init__(self, path: Path) -> None:
         self._disk = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
@@ -97,7 +97,7 @@ class BagFile:
         sync_directory(path.parent)
 
     def add_topic(self, topic: RecordedTopic) -> None:
-        """Make a topic known, once, before its first message."""
+        """Register a topic, once, before its first message."""
         schema = self._schemas.get(topic.ros_type)
         if schema is None:
             schema = self._writer.register_schema(
@@ -122,16 +122,16 @@ class BagFile:
 
     @property
     def waiting(self) -> int:
-        """How much is not on disk yet [bytes]."""
+        """Size of the part that is not on disk yet [bytes]."""
         return len(self._outbox) + self._in_chunk
 
     @property
     def size(self) -> int:
-        """How large the file will be when what waits is on disk [bytes]."""
+        """Size of the file including the part that is not on disk yet [bytes]."""
         return self._outbox.tell() + self._in_chunk
 
     def flush(self) -> None:
-        """See all messages on disk.
+        """Write all messages to disk.
 
         Raises:
             OSError: if the disk does not take them; they wait for the next flush.

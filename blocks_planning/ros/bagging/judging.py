@@ -1,4 +1,4 @@
-"""A trial of a bag, and what in it does not follow from the rest."""
+"""A trial of a bag, and its contradictions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Outcome:
 
     Attributes:
         status: how it ended.
-        reason: why it could not go on; '' if it came to an end of its own or a user cancelled it.
+        reason: why it could not continue; '' if it ended regularly or a user cancelled it.
         sequence: of the latest observation; -1 if the board was never observed.
         placements: the blocks that stand.
         summary: counts, costs and measures by name; those that its version of the message has.
@@ -70,7 +70,7 @@ class RecordedTrial:
         return lacks_states or lacks_subgoals or self.record.status is TrialStatus.BUILDING
 
     def contradictions(self) -> Iterator[str]:
-        """Everything that does not follow from the rest, a sentence each."""
+        """All contradictions of the trial, a sentence each."""
         record, outcome = self.record, self.outcome
         if outcome is not None and self._has_gap:
             found = record.placements

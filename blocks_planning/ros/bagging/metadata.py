@@ -15,7 +15,7 @@ METADATA = 'metadata.yaml'
 VERSION = 9
 STORAGE = 'mcap'
 LIBRARY = f'blocks_planning {__version__}'
-"""Who wrote a file; also in its header."""
+"""Name of the writer of a file; also in its header."""
 NEVER_NS = 2**63 - 1
 """When a file without messages begins."""
 
@@ -54,7 +54,7 @@ class FileSummary(NamedTuple):
 
 
 def information(files: Sequence[FileSummary]) -> dict[str, Any]:
-    """What there is to know of a bag, from its files."""
+    """The metadata of a bag, from its files."""
     topics = {topic.name: topic for file in files for topic in file.topics}
     filled = [file for file in files if file.messages]
     return {
@@ -101,10 +101,10 @@ def _times(files: Sequence[FileSummary]) -> dict[str, dict[str, int]]:
 
 
 def from_yaml(text: str) -> Any:
-    """What a YAML text says; None if it says nothing that can be read."""
+    """The content of a YAML text; None if it cannot be read."""
     try:
         return yaml.safe_load(text)
-    except Exception:  # noqa: BLE001  PyYAML lets through whatever a value makes it stumble over
+    except Exception:  # noqa: BLE001  PyYAML raises many kinds of exceptions for bad values
         return None
 
 

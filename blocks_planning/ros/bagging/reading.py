@@ -35,7 +35,7 @@ def messages_of(bag: Path, kinds: Container[str]) -> Iterator[BagMessage]:
     """The messages of some kinds, in the order in which they came.
 
     Raises:
-        BagError: if the bag can't be read, or was cut off and has to be repaired first.
+        BagError: if the bag can't be read, or is truncated and has to be repaired first.
     """
     if not bag.exists():
         raise BagError(f'{bag}: does not exist')

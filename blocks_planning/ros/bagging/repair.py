@@ -1,4 +1,4 @@
-"""Making a bag whole that was cut off."""
+"""Repair of truncated bags."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from blocks_planning.ros.bagging.metadata import (
 
 _FRAME = struct.Struct('<BQ')  # opcode and length of a record
 _DATA = (Opcode.HEADER, Opcode.CHUNK, Opcode.MESSAGE_INDEX, Opcode.METADATA)
-"""What a file of ours is made of, until its index begins."""
+"""The records of a file of this package before its index."""
 _OURS = LIBRARY.split()[0]
 
 
@@ -92,7 +92,7 @@ def file_begins(bag: Path) -> list[FileBegin]:
 
 
 def repair(bag: Path) -> list[Repair]:
-    """Make a bag whole, if it is not: a directory, or a single MCAP file.
+    """Repair a bag, if it is truncated: a directory, or a single MCAP file.
 
     Raises:
         BagError: if it can't be, or is being recorded right now; nothing was lost then.
@@ -117,7 +117,7 @@ def claim(directory: Path) -> int:
     """Lock a bag for writing, as long as the descriptor is open.
 
     Raises:
-        BagError: if somebody else holds it.
+        BagError: if another process holds it.
     """
     descriptor = os.open(directory, os.O_RDONLY)
     try:
@@ -129,7 +129,7 @@ def claim(directory: Path) -> int:
 
 
 def repair_claimed(directory: Path) -> tuple[list[FileSummary], list[Repair]]:
-    """Make a bag whole whose lock the caller holds.
+    """Repair a bag whose lock the caller holds.
 
     Returns:
         (what is in its files, what was repaired)
@@ -190,7 +190,7 @@ def _free_name(path: Path) -> Path:
 
 
 def _header() -> bytes:
-    """How a file of ours begins."""
+    """The first bytes of a file of this package."""
     stream = BytesIO()
     library, profile = LIBRARY.encode(), PROFILE.encode()
     body = b''.join(struct.pack('<I', len(text)) + text for text in (profile, library))
@@ -202,7 +202,7 @@ def _is_torn_header(begin: bytes, path: Path) -> bool:
     """Whether a file ends before its first message could have come.
 
     Raises:
-        BagError: if the file is not one of ours: somebody else may be writing it.
+        BagError: if this package did not write the file: another process may be writing it.
     """
     if len(begin) < len(_header()) and _header().startswith(begin):
         return True

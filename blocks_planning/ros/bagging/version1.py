@@ -54,7 +54,7 @@ _NEW_FIELDS = {
     'WorldState': 'observations',
     'TrialOutcome': 'code',
 }
-"""A field that the message has now and did not have in version 1."""
+"""A field that the message did not have in version 1."""
 
 
 def is_of_version1(kind: str, message: Any) -> bool:

@@ -1,4 +1,4 @@
-"""Writing a bag that survives being killed."""
+"""Writer of a bag that survives a kill."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from blocks_planning.ros.bagging.repair import claim, is_finished, repair_claime
 
 FLUSH_BYTES = 2**20
 MOST_WAITING_BYTES = 2**24
-"""When so much waits for a disk that takes nothing, further messages are lost."""
+"""Size of waiting messages above which further ones are lost, while the disk is full [bytes]."""
 
 
 class BagWriter:
@@ -33,7 +33,7 @@ class BagWriter:
         Args:
             path: its directory: one that does not exist, is empty, or holds a bag cut off.
             topics: all that will be recorded.
-            split_bytes: begin another file when one has so many bytes; 0: never.
+            split_bytes: file size at which another file begins [bytes]; 0: never.
 
         Raises:
             BagError: if the path holds something else, such as a finished bag, or can't be
@@ -85,7 +85,7 @@ class BagWriter:
         return 0 < self._split_bytes <= self._file.size
 
     def flush(self) -> None:
-        """See all messages on disk, and begin another file if this one is large enough.
+        """Write all messages to disk, and begin another file if this one is large enough.
 
         Raises:
             OSError: if the disk does not take them. They wait for the next flush, and the file

@@ -1,8 +1,8 @@
 """Node ``action_searcher``: how a region is filled, and the placements that fill it.
 
-Searches run in threads of their own, so that the node answers meanwhile; they stop as soon as
-their trial is over. The compiled parts of the searches are made ready in such a thread too, after
-the node has joined the graph; searches wait for it.
+Searches run in worker threads, so that the node stays responsive; they stop as soon as their trial
+is over. The kernels of the searches are compiled in such a thread too, after the node has joined the
+graph; searches wait for it.
 
 | | |
 |---|---|
@@ -63,13 +63,13 @@ class ActionSearcher(PartNode):
         self._evaluated = 0
 
     def compile(self) -> None:
-        """Make the compiled parts of the searches ready, in a thread; searches wait for it."""
+        """Compile the kernels of the searches, in a thread; searches wait for it."""
         self.is_compiling = True
         self._may_search.clear()
         threading.Thread(target=self._compile, name='compile', daemon=True).start()
 
     def begin(self, trial: TrialStarted) -> None:
-        """A new trial: what is searched for another one is of no use."""
+        """Begin a trial: cancel the searches of other trials."""
         if self.trial is None or self.trial.trial_id != trial.trial_id:
             self._stop_searching()
         super().begin(trial)

@@ -1,4 +1,4 @@
-"""Node ``bag_recorder``: everything that is said, in a bag.
+"""Node ``bag_recorder``: records all messages in a bag.
 
 The bag is a rosbag2 directory of MCAP files, see :mod:`.bagging`. Killing the node, or a power
 cut, loses at most the last ``flush_period_s``; started again, it repairs the bag and goes on.
@@ -30,12 +30,12 @@ from blocks_planning.ros.runtime.process import run
 from blocks_planning.ros.wire.graph import BAG_RECORDER
 from blocks_planning.ros.wire.topics import VIEW_TOPICS, Topic, ViewTopic
 
-BAG_DIR = Parameter('bag_dir', 'bag', 'Folder of the bag: a new one, or of a bag cut off.')
+BAG_DIR = Parameter('bag_dir', 'bag', 'Folder of the bag: a new one, or of a truncated bag.')
 FLUSH_PERIOD = Parameter(
     'flush_period_s', 1.0, 'How often everything is seen on disk [s].', (0.05, 60.0)
 )
 SPLIT_BYTES = Parameter(
-    'split_bytes', 0, 'Begin another file when one is so large [bytes]; 0: never.', (0, 2**40)
+    'split_bytes', 0, 'File size at which another file begins [bytes]; 0: never.', (0, 2**40)
 )
 PARAMETERS = (BAG_DIR, FLUSH_PERIOD, SPLIT_BYTES)
 _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
@@ -79,7 +79,7 @@ class BagRecorder(GuardedNode):
         return self._writer.counts.total()
 
     def health(self) -> Health:
-        """How the recorder is."""
+        """The health of the recorder."""
         counts = {'messages_recorded': self.count, 'messages_lost': self._writer.lost}
         around = self._peers.around(BAG_RECORDER)
         return Health('recording', '', *around, failure=self._failure, values=counts)
@@ -117,7 +117,7 @@ class BagRecorder(GuardedNode):
 
 
 def recorded_topic(topic: Topic | ViewTopic, name: str) -> RecordedTopic:
-    """What a bag says of a topic."""
+    """The metadata of a topic in a bag."""
     package, ros_type = topic.ros_type.__module__.split('.')[0], topic.ros_type.__name__
     full_type = f'{package}/msg/{ros_type}'
     return RecordedTopic(

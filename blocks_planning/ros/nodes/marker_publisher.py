@@ -30,12 +30,12 @@ from blocks_planning.view.solids import solids_of
 
 CELL_SIZE = Parameter('cell_size', 0.05, 'Side of a cell [m].', (1e-4, 100.0))
 PUBLISH_PERIOD = Parameter(
-    'publish_period_s', 0.05, 'A change is shown after at most so long [s].', (0.02, 60.0)
+    'publish_period_s', 0.05, 'Longest time until a change is shown [s].', (0.02, 60.0)
 )
 
 
 class MarkerPublisher(Watcher):
-    """Shows the latest scene if it is another one than was shown last."""
+    """Publishes the latest scene if it differs from the last published one."""
 
     def __init__(self, **options: Any) -> None:
         """See :class:`PartNode`."""
@@ -45,7 +45,7 @@ class MarkerPublisher(Watcher):
         self.create_timer(self.values['publish_period_s'], self._show, clock=self.steady)
 
     def _show(self) -> None:
-        """Publish the scene, unless it is there to see already."""
+        """Publish the scene, unless it is already published."""
         if self.scene is None or self.scene is self._shown:
             return
         self._shown = self.scene

@@ -19,7 +19,7 @@ from blocks_planning.trials.messages import Message, ProposalMade
 
 
 class SubgoalSelector(PartNode):
-    """The selector, which tells a person why a proposal is not taken."""
+    """The selector; it reports why a proposal is refused."""
 
     def __init__(self, **options: Any) -> None:
         """See :class:`PartNode`."""

@@ -49,7 +49,7 @@ from blocks_planning.trials.status import TrialStatus
 
 RECORDS = 'trials.jsonl'
 SCRIPT = Parameter('script', '', 'A trial script to run; none: wait for goals.')
-PARTICIPANT = Parameter('participant', '', 'Code of the person who scopes; none: as scripted.')
+PARTICIPANT = Parameter('participant', '', 'Code of the person who plans; none: as scripted.')
 OUT_DIR = Parameter('out_dir', '.', 'Folder of trials.jsonl.')
 WAIT_FOR = Parameter(
     'wait_for',
@@ -106,7 +106,7 @@ class TrialOrchestrator(PartNode):
         self.take(started)
 
     def cancel_trial(self, reason: str = '') -> None:
-        """End the trial that runs, if one does; ``reason`` is '' if a user asked for it."""
+        """End the running trial, if there is one; ``reason`` is '' if a user cancelled it."""
         if self.trial is not None:
             self.take(CancelTrial(self.trial.trial_id, reason))
 
@@ -151,7 +151,7 @@ class TrialOrchestrator(PartNode):
             self._script.go_on()
 
     def _written(self, ended: TrialEnded) -> TrialEnded:
-        """An end whose record is on disk, or that says why it is not."""
+        """The outcome after writing the record, or with the reason why it was not written."""
         assert ended.record is not None
         try:
             self._records.append(ended.record)
@@ -167,7 +167,7 @@ class TrialOrchestrator(PartNode):
             self.start_trial(spec.trial_id, spec)
 
     def _give_up(self, reason: str) -> None:
-        """End the script: what one trial lacks, the next one would lack too."""
+        """End the script: the next trial would fail for the same reason."""
         self.get_logger().error(f'the script ends here: {reason}')
         self.exit_code = 1
         self._stop.set()
@@ -236,7 +236,7 @@ class TrialOrchestrator(PartNode):
         )
 
     def finish(self) -> None:
-        """Before the node is gone: see that the last outcome has arrived everywhere."""
+        """Before shutdown: wait until all nodes have received the last outcome."""
         self.wait_until_heard(OUTCOME)
         self._records.close()
 

@@ -1,8 +1,8 @@
-"""Node ``trial_view``: a page that shows what happens, and on which a person scopes.
+"""Node ``trial_view``: a page that shows the trials, and on which a person can plan.
 
-It listens to the graph and puts what there is to see into a mailbox; a server in a thread of its
-own shows it (:mod:`blocks_planning.view.web`). What a person proposes on the page is judged here,
-by what this node knows, and said if it can be taken.
+The node subscribes to the graph and puts the current session into a mailbox; a server in its own
+thread shows it (:mod:`blocks_planning.view.web`). The node checks the proposals from the page
+against its session, and publishes the valid ones.
 
 | | |
 |---|---|
@@ -45,16 +45,16 @@ from blocks_planning.view.web.health import NOTHING, health_after
 from blocks_planning.view.web.proposing import Posted, Refused, judge, parse
 from blocks_planning.view.web.queue import Queue
 
-HOST = Parameter('host', '127.0.0.1', 'Name or number to listen at; a token off this machine.')
-PORT = Parameter('port', 0, 'Port to listen at; 0: any that is free.', (0, 65535))
-TOKEN = Parameter('token', '', 'What who looks must know; none: of the environment, or a new one.')
-SCRIPT = Parameter(
-    'script', '', 'The trial script that runs, to count its trials; none: no count.'
+HOST = Parameter(
+    'host', '127.0.0.1', 'Address to listen on; other than this machine needs a token.'
 )
+PORT = Parameter('port', 0, 'Port to listen on; 0: any free one.', (0, 65535))
+TOKEN = Parameter('token', '', 'Access token; none: that of the environment, or a new one.')
+SCRIPT = Parameter('script', '', 'Trial script, to count its trials; none: no count.')
 PARTICIPANT = Parameter('participant', '', 'Code of the person; none: as the script says.')
 PARAMETERS = (HOST, PORT, TOKEN, SCRIPT, PARTICIPANT)
 TOKEN_VARIABLE = 'BLOCKS_PLANNING_VIEW_TOKEN'
-"""A token in a process's arguments could be read by everybody on the machine."""
+"""Every user of the machine could read a token in the arguments of a process."""
 NICENESS = 10
 
 
@@ -91,7 +91,9 @@ class TrialView(PartNode):
         self.page = PageServer(address, self._mailbox, self._post)
         self._show()
         self.page.start()
-        if PARENT_VARIABLE not in os.environ:  # else who started this process says it
+        if (
+            PARENT_VARIABLE not in os.environ
+        ):  # otherwise the process that started this one prints it
             self.get_logger().info(f'the page is at {self.page.address.url}')
 
     @property
@@ -105,7 +107,7 @@ class TrialView(PartNode):
         return {'browsers': self.page.clients, 'trials_kept': len(self.memory.past)}
 
     def cares_for(self, topic: Topic, spec: TrialSpec) -> bool:
-        """See :class:`PartNode`; answers that no person waits for are left alone: they are many."""
+        """See :class:`PartNode`; only answers to a person's proposals are converted."""
         return topic is not SEARCH_RESULT or _is_persons(spec)
 
     def take(self, message: Message) -> None:
@@ -127,7 +129,7 @@ class TrialView(PartNode):
             self.refuse(f'a message on {DIAGNOSTICS}', error)
 
     def _take_health(self, message: DiagnosticArray) -> None:
-        """What a node of this graph says of itself."""
+        """Take the diagnostics of a node of this graph."""
         space = self.get_namespace().rstrip('/') + '/'
         for status in message.status:
             if status.name.startswith(space):
@@ -142,7 +144,7 @@ class TrialView(PartNode):
         self._show()
 
     def _post(self, data: Any) -> Future[Refused | None]:
-        """From the thread of the server: what a person has sent, to be judged in the node's own."""
+        """Called in the thread of the server: pass a proposal to the thread of the node."""
         answer: Future[Refused | None] = Future()
         self._posted.append((data, answer))
         self.call_soon(self._take_posted)
@@ -158,7 +160,7 @@ class TrialView(PartNode):
                     answer.set_exception(error)
 
     def _propose(self, data: Any) -> Refused | None:
-        """Say a proposal, if it can be taken; else why not."""
+        """Publish a proposal if it is valid; otherwise return the reason."""
         if self.trial is None:
             return Refused('stale', 'no trial has begun')
         posted = parse(data, self.board)
@@ -175,7 +177,7 @@ class TrialView(PartNode):
             self._show()
 
     def finish(self) -> None:
-        """Before the node is gone: tell the browsers that this was all."""
+        """Before shutdown: tell the browsers that the session is over."""
         self.page.stop()
 
 
@@ -184,7 +186,7 @@ def _is_persons(spec: TrialSpec) -> bool:
 
 
 def stand_back() -> None:
-    """Let every other process go first: what is shown must not wait for being shown.
+    """Lower the priority of this process, so that the page does not slow down the trials.
 
     Where the system schedules by session, the niceness of a process counts inside its session
     only; a session of its own, as the bring-up gives it, has one too.

@@ -1,9 +1,8 @@
 """Node ``world``: the board, and what becomes of each order.
 
 The driver of real hardware can replace it; nothing else has to change. With a ``journal_dir`` a
-world that was killed and started again goes on with the board of the running trial. If the disk
-does not take an observation, the order is not carried out: the trial ends, and its outcome says
-why.
+world that was killed and restarted continues with the board of the running trial. If an observation
+cannot be written to disk, the order is not executed; the trial ends, and its outcome has the reason.
 
 | | |
 |---|---|
@@ -83,7 +82,7 @@ class World(PartNode):
         return said
 
     def _resume(self, journal: Journal, trial_id: str) -> tuple[Message, ...]:
-        """Go on where a trial was; or from the board as it was found, and say what was lost."""
+        """Continue a trial from its journal; or from its initial board, with a warning."""
         found = self.memory.state.observations
         try:
             kept, self._lost = journal.begin(trial_id)
@@ -124,7 +123,7 @@ class World(PartNode):
         }
 
     def receive(self, message: Message) -> None:
-        """Carry out an action in its time; the arm is not stopped by another of its trial."""
+        """Execute an action after ``placing_s``; another action of the trial does not stop it."""
         if not isinstance(message, PlaceBlock) or self.values['placing_s'] == 0:
             super().receive(message)
         elif self._placing is None or self._placing.trial_id != message.trial_id:

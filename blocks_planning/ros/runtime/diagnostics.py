@@ -1,4 +1,4 @@
-"""How a node is, once a second on ``/diagnostics``, as ROS tools expect it there.
+"""The health of a node, once a second on ``/diagnostics``, as ROS tools expect it.
 
 One status per node, by its fully qualified name; a value is a text. All nodes say ``state``,
 ``trial``, ``peers_present`` and ``peers_missing``; what else there is depends on the node.

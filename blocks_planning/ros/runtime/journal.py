@@ -36,7 +36,7 @@ _LINE = re.compile(b'((?:' + b' '.join([_NUMBER] * 3) + b')?);' + _BLOCKS + b';'
 _LINE_1 = re.compile(_BLOCK)
 SUFFIX = '.journal'
 MOST_KEPT = 16
-"""Journals of trials that were left for others; one trial runs at a time."""
+"""Number of kept journals of interrupted trials; one trial runs at a time."""
 
 
 class Journal:
@@ -126,7 +126,7 @@ class Journal:
         return f'{path} is of another trial; it was set aside as {name}'
 
     def end(self) -> None:
-        """The trial is over: its journal is of no use any more."""
+        """Delete the journal of a finished trial."""
         path = self._path
         self.close()
         if path is not None:
@@ -141,7 +141,7 @@ class Journal:
             self._descriptor = None
 
     def release(self) -> None:
-        """Close the open journal, and let others write in the folder."""
+        """Close the open journal, and release the folder."""
         self.close()
         self._disk.shutdown()
         os.close(self._lock)

@@ -26,14 +26,14 @@ from blocks_planning.trials.spec import TrialSpec
 REMIND_PERIOD = Parameter(
     'remind_period_s',
     1.0,
-    'After so long without news, say again what nobody has answered [s].',
+    'Time without news after which unanswered messages are sent again [s].',
     (0.05, 3600.0),
 )
 FRAME_ID = Parameter('frame_id', 'board', 'Coordinate frame of the board, for every header.')
 ACKNOWLEDGE_S = 0.3
 _MOST_LEFT = 64
 _OLDER_STATES = 2
-"""So many states in a row that are older than the one known say that the board was set back."""
+"""Number of older states in a row after which the board counts as reset."""
 
 
 class Part(Protocol):
@@ -42,7 +42,7 @@ class Part(Protocol):
     Memory: Any
 
     def step(self, memory: Any, message: Message) -> tuple[Any, tuple[Message, ...]]:
-        """What the part does with a message."""
+        """The step of the part for a message."""
         ...
 
 
@@ -66,7 +66,7 @@ class PartNode(GuardedNode):
         parameters: tuple[Parameter, ...] = (),
         **options: Any,
     ) -> None:
-        """Subscribe to the node's topics and advertise what it says.
+        """Subscribe to the node's topics and advertise its publications.
 
         Raises:
             ConfigurationError: for a parameter that is unknown or out of its range, and for a
@@ -108,7 +108,7 @@ class PartNode(GuardedNode):
         self.take_bytes(topic, partial(self._receive, topic))
 
     def take(self, message: Message) -> None:
-        """Let the part step, and say what it says."""
+        """Run a step of the part, and publish its messages."""
         before = self.memory
         if isinstance(message, TrialStarted):
             self.begin(message)
@@ -124,7 +124,7 @@ class PartNode(GuardedNode):
                 self._receive(topic, held)
 
     def advance(self, message: Message) -> tuple[Message, ...]:
-        """Let the part step; return what is to be said."""
+        """Run a step of the part; return its messages."""
         said: tuple[Message, ...]
         self.memory, said = self._part.step(self.memory, message)
         return said
@@ -138,7 +138,7 @@ class PartNode(GuardedNode):
         self.take(message)
 
     def health(self) -> Health:
-        """How the node is."""
+        """The health of the node."""
         return Health(
             'building' if self.is_busy else 'idle',
             self.trial.trial_id if self.is_busy and self.trial is not None else '',
@@ -148,11 +148,11 @@ class PartNode(GuardedNode):
 
     @property
     def is_busy(self) -> bool:
-        """Whether a trial runs here."""
+        """Whether a trial is running in this node."""
         return getattr(self.memory, 'trial', None) is not None
 
     def load(self) -> dict[str, object]:
-        """What the node has to do, and has done, by name; see :mod:`.diagnostics`."""
+        """Counts of pending and finished work, by name; see :mod:`.diagnostics`."""
         return {}
 
     def begin(self, trial: TrialStarted) -> None:
@@ -214,7 +214,7 @@ class PartNode(GuardedNode):
         self._outlets[topic.kind].wait_for_all_acked(Duration(seconds=ACKNOWLEDGE_S))
 
     def perform(self, message: Message) -> None:
-        """Do what the part wants done that is no message."""
+        """Carry out a command of the part that no topic carries."""
         raise NotImplementedError(f'{type(message).__name__} is not for {self.get_name()}')
 
     def _receive(self, topic: Topic, data: bytes) -> None:
@@ -245,7 +245,7 @@ class PartNode(GuardedNode):
             self._inbox.hold(message.trial_id, (topic, data), len(data))
 
     def _on_match(self, status: QoSPublisherMatchedInfo) -> None:
-        """Tell a new listener what it may have missed."""
+        """Publish again what a new subscriber may have missed."""
         if status.current_count_change > 0 and self.trial is not None:
             self.take(Remind(self.trial.trial_id))
 

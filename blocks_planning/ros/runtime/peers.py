@@ -1,4 +1,4 @@
-"""Which other nodes are there."""
+"""The other nodes of the graph: present and missing."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Around(NamedTuple):
     """The other ends of a node's topics.
 
     Attributes:
-        present: names of the nodes that are there, in order.
-        missing: names of those that this package has for what nobody says.
+        present: names of the present nodes, in order.
+        missing: names of the nodes of this package for topics without a publisher.
     """
 
     present: list[str]
@@ -58,7 +58,7 @@ class Peers:
         ]
 
     def around(self, topics: NodeTopics) -> Around:
-        """Who is at the other ends of a node's topics."""
+        """The nodes at the other ends of a node's topics."""
         heard = {_End(True, topic.name) for topic in topics.listens}
         sought = heard | {_End(False, topic.name) for topic in topics.says}
         ends = self._ends()

@@ -44,7 +44,7 @@ _SPIN_S = 0.1
 _DRAIN_STEP_S = 0.01
 _LOOK_FOR_PARENT_S = 0.5
 STOOD_STILL_S = 4.5
-"""Less than the lease in config/loopback.xml, after which others take a node for dead."""
+"""Less than the lease in config/loopback.xml, after which other nodes drop a silent node [s]."""
 _MOST_WORK = 0.1
 _AGAIN_VARIABLE = 'BLOCKS_PLANNING_STARTED_AGAIN'
 BAD_INPUT = 2
@@ -52,7 +52,7 @@ CRASHED = 3
 
 
 def prepare_environment() -> None:
-    """Make ROS packages findable where nothing was sourced: in a virtual environment."""
+    """Make ROS packages importable in a virtual environment, where no setup file was sourced."""
     os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)
     if not os.environ.get('HOME'):
         os.environ.setdefault('ROS_LOG_DIR', str(Path.cwd() / 'log'))
@@ -150,7 +150,7 @@ def _wait(stop: threading.Event) -> None:
 
 
 def _watch(stop: threading.Event, made: list[str]) -> None:
-    """Begin anew if this process was stopped for longer than others wait for it.
+    """Re-exec this process if it was stopped for longer than the lease.
 
     A thread of its own looks at the clocks, so that a node that is made slowly counts as running.
     A node that is made without ever letting this thread run looks stopped, so that is forgiven
@@ -226,6 +226,6 @@ def _on_signal(stop: threading.Event, received: int) -> None:
 
 
 def _arm_exit() -> None:
-    """End the process without fail: from a thread in C, which needs no GIL."""
+    """End the process in any case: from a thread in C, which needs no GIL."""
     nowhere = open(os.devnull, 'w')  # noqa: PTH123, SIM115  for as long as the process lives
     faulthandler.dump_traceback_later(EXIT_BOUND_S, exit=True, file=nowhere)

@@ -12,11 +12,11 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 MOST_DEATHS = 8
-"""So many crashes in a row, and a node is given up."""
+"""Number of crashes in a row after which a node is not restarted."""
 MOST_KILLS = 64
-"""So many kills from outside in a row, each before the node was ready: something is wrong."""
+"""Number of kills in a row, each before the node was ready, after which it is not restarted."""
 STABLE_S = 5.0
-"""A node that has been ready for this time is forgiven all its deaths."""
+"""After being ready for this time [s], the earlier deaths of a node no longer count."""
 FROM_OUTSIDE = (0, *(-number for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)))
 """Exit codes of a process that was ended by another."""
 _FIRST_PAUSE_S = 0.1
@@ -164,7 +164,7 @@ class NodeProcess:
 
 
 def stop_all(processes: Sequence[NodeProcess]) -> None:
-    """End processes in good order, within ``STOP_BOUND_S``."""
+    """Stop processes cleanly, within ``STOP_BOUND_S``."""
     for process in processes:
         process.signal(signal.SIGTERM)
     deadline = time.monotonic() + STOP_BOUND_S

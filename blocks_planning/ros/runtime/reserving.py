@@ -1,4 +1,4 @@
-"""A port that is known before the process that will listen at it runs."""
+"""Reservation of a port before the process that listens on it starts."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from blocks_planning.errors import ConfigurationError
 
 
 class ReservedPort:
-    """A port that nobody else is given, and at which a process of this user may listen.
+    """A reserved port on which another process of this user may listen.
 
-    The socket is bound but never listens, and so does not stand in the way of one that does; also
-    not of a second one, when the process that listened was killed and is started again.
+    The socket is bound but never listens, so it does not block a process that does, nor its
+    successor after a kill and restart.
     """
 
     def __init__(self, host: str, port: int = 0) -> None:
-        """Take a port; 0: any that is free.
+        """Reserve a port; 0: any free one.
 
         Raises:
             ConfigurationError: if the host is no address of this machine, or the port is taken.
@@ -29,7 +29,7 @@ class ReservedPort:
         self.number: int = self._socket.getsockname()[1]
 
     def release(self) -> None:
-        """Let others have it."""
+        """Release the port."""
         self._socket.close()
 
 

@@ -1,4 +1,4 @@
-"""Which trial of a script comes next, and how the script ends."""
+"""The order of the trials of a script, and its end."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class ScriptRun:
 
         Args:
             path: of the script.
-            participant: code of the person who scopes; '' for what the script says.
+            participant: code of the person who plans; '' for that of the script.
             finished: ids of the trials that have a record.
             make_timer: makes a timer of a period [s] with a callback.
             start: starts a trial; None after the last one.

@@ -1,7 +1,7 @@
-"""One node of a name at a time: a second one would be told the same, and do it again.
+"""One node per name: a second one would receive the same messages and repeat the same work.
 
-The claim is a socket without a file, which Linux takes away with the process, however that ends.
-It holds among the processes of one machine.
+The claim is a socket without a file, which Linux closes with the process, however that ends. It
+holds for the processes of one machine.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import time
 from blocks_planning.errors import LimitExceeded
 
 CLAIM_WAIT_S = 3.0
-"""For as long as a process may take to go that was told to."""
+"""Grace period after a stop request [s]."""
 _LOOK_S = 0.05
 
 
@@ -24,10 +24,10 @@ def claim_name(domain: int, name: str, wait_s: float = CLAIM_WAIT_S) -> socket.s
     Args:
         domain: the ROS domain.
         name: fully qualified.
-        wait_s: how long to wait for the one that has it [s].
+        wait_s: how long to wait for another process that holds it [s].
 
     Returns:
-        the claim; None where there is no such thing: elsewhere than on Linux
+        the claim; None on systems other than Linux
 
     Raises:
         LimitExceeded: if another process still has it.

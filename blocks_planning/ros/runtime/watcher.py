@@ -1,4 +1,4 @@
-"""Watching the graph: what it shows at the moment, as a scene."""
+"""A node that follows the graph and folds its messages into a scene."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from blocks_planning.view.scene import Scene, scene_after
 
 
 class _Watching:
-    """A part that only looks; its memory is a scene, or None before the first trial."""
+    """A part that sends nothing; its memory is a scene, or None before the first trial."""
 
     Memory: Any = staticmethod(lambda: None)
 
     def step(
         self, memory: Scene | None, message: Message
     ) -> tuple[Scene | None, tuple[Message, ...]]:
-        """Look."""
+        """Update the scene."""
         if memory is not None:
             return scene_after(memory, message), ()
         return (Scene(message) if isinstance(message, TrialStarted) else None), ()
 
 
 class Watcher(PartNode):
-    """A node that only listens; ``scene`` is what there is to see."""
+    """A node that publishes nothing; ``scene`` is the current scene."""
 
     def __init__(
         self,
@@ -39,6 +39,6 @@ class Watcher(PartNode):
 
     @property
     def scene(self) -> Scene | None:
-        """The trial that runs, or was the last to run."""
+        """The running trial, or the last one."""
         scene: Scene | None = self.memory
         return scene

@@ -1,4 +1,4 @@
-"""Which node listens to what, and which says what."""
+"""The nodes, and the topics that each subscribes to and publishes."""
 
 from __future__ import annotations
 

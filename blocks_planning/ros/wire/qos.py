@@ -5,21 +5,21 @@ from __future__ import annotations
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 STREAM_DEPTH = 1000
-"""A queue that is shallower at either end than a burst is long loses messages without a word."""
+"""A queue that is shallower than a burst at either end silently drops messages."""
 
 
 def latched_state(depth: int = 1) -> QoSProfile:
-    """For who publishes what holds until further notice: the latest reach late comers too."""
+    """For publishers of latched topics: late subscribers receive the latest messages too."""
     return _profile(depth, DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def every_latched_state() -> QoSProfile:
-    """For who listens to a latched topic: begin with the latest, then miss none."""
+    """For subscribers of latched topics: begin with the latest message, then miss none."""
     return _profile(STREAM_DEPTH, DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def stream() -> QoSProfile:
-    """For what has to arrive once, at both ends."""
+    """For messages that have to arrive once; used at both ends."""
     return _profile(STREAM_DEPTH, DurabilityPolicy.VOLATILE)
 
 

@@ -54,12 +54,12 @@ class Topic(NamedTuple):
 
     @property
     def publisher_qos(self) -> QoSProfile:
-        """Of its publishers."""
+        """Quality of service of its publishers."""
         return qos.latched_state(self.depth) if self.latched else qos.stream()
 
     @property
     def subscription_qos(self) -> QoSProfile:
-        """Of its subscriptions."""
+        """Quality of service of its subscriptions."""
         return qos.every_latched_state() if self.latched else qos.stream()
 
 
@@ -154,12 +154,12 @@ class ViewTopic(NamedTuple):
 
     @property
     def publisher_qos(self) -> QoSProfile:
-        """Of its publishers."""
+        """Quality of service of its publishers."""
         return qos.latched_state()
 
     @property
     def subscription_qos(self) -> QoSProfile:
-        """Of subscriptions that must miss nothing."""
+        """Quality of service of subscriptions that must miss nothing."""
         return qos.every_latched_state()
 
 

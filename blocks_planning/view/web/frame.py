@@ -1,4 +1,4 @@
-"""The picture that the page gets, some times a second."""
+"""The frame that the server sends to the page several times a second."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from blocks_planning.view.web.session import Session, Turn, answer_to, turn_of
 from blocks_planning.worlds.observation import mask_of, standing
 
 MOST_WORDS = 20
-"""Proposals that are listed; the last ones."""
+"""Number of proposals that are listed, the last ones."""
 
 
 class Seen(NamedTuple):
-    """Everything that there is to see at one moment."""
+    """Everything that the page shows at one moment."""
 
     session: Session = Session()
     health: Health = NOTHING
@@ -32,17 +32,17 @@ class Seen(NamedTuple):
 def hides_costs(session: Session) -> bool:
     """Whether planning costs of any trial must not be sent now.
 
-    From the start of a trial that hides its costs until another one begins.
+    True from the start of a trial that hides its costs until another one begins.
     """
     return session.scene is not None and session.scene.spec.strategy.hides_costs
 
 
 def frame_json(seen: Seen, now_s: float) -> Json:
-    """What is to be seen now.
+    """The current frame as JSON.
 
     Args:
-        seen: all of it.
-        now_s: on the clock of the health [s].
+        seen: everything to show.
+        now_s: time on the clock of the health [s].
     """
     session, place = seen.session, seen.place
     hidden = hides_costs(session)
@@ -89,7 +89,7 @@ def _turn_json(turn: Turn | None) -> Json | None:
 
 
 def _proposals_json(session: Session, scene: Scene, hidden: bool) -> list[Json]:
-    """What the person has said in this trial, with what became of it."""
+    """The person's proposals in this trial, with their outcomes."""
     decided = scene.record.proposals
     last = scene.chosen.decisions[-1].sequence if scene.chosen is not None else -1
     said = [*decided, *(p for p in session.proposals if p.sequence > last)]
@@ -109,7 +109,7 @@ def _told(session: Session, scene: Scene, proposal: Proposal, hidden: bool) -> J
 
 
 def _outcome(scene: Scene, proposal: Proposal, answer: SolveResult | None) -> str:
-    """What became of a proposal, as a word for the page."""
+    """The outcome of a proposal, as a word for the page."""
     if proposal.kind is not ProposalKind.BUILD:
         return str(proposal.kind.value)
     if answer is not None:
@@ -118,7 +118,7 @@ def _outcome(scene: Scene, proposal: Proposal, answer: SolveResult | None) -> st
     taken = [entry.decision for entry in entries if entry.sequence == proposal.sequence]
     if not taken:
         return 'searching'
-    # It was answered before this page was there.
+    # It was answered before this server started.
     target = target_of(scene.task, taken[0].built, proposal.region)
     return 'built' if target in [subgoal.target for subgoal in taken[0].subgoals] else 'failed'
 

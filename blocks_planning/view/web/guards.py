@@ -1,9 +1,9 @@
-"""Who may look at the page, and who may say something on it.
+"""Access control of the page.
 
-A page of another origin must not be able to talk to this one through the browser of a person who
-has both open. So a request must name this server as its host (or a foreign name could be made to
-point here), and whatever changes something, or opens a socket, must come from this page. Off the
-loopback a token is asked for as well.
+A page of another origin must not send requests to this server through the browser of a person who
+has both pages open. So the Host header of a request must name this server (this prevents DNS
+rebinding), and a request that changes something, or opens a socket, must have this page as its
+origin. An address other than the loopback also requires a token.
 """
 
 from __future__ import annotations
@@ -31,22 +31,23 @@ HEADERS: Mapping[str, str] = {
     'Cache-Control': 'no-store',
     'Server': 'blocks_planning',
 }
-"""Of every answer."""
+"""Headers of every response."""
 LEAST_TOKEN = 16
 _MOST_CLIENTS = 1000
 
 
 @dataclass(frozen=True)
 class Address:
-    """Where the page is.
+    """The address of the page.
 
     Attributes:
-        host: name or number to listen at.
-        port: to listen at; 0 before it is known.
-        token: to be shown by who looks; '' for none.
+        host: host name or IP address to listen on.
+        port: port to listen on; 0 before it is known.
+        token: access token that every browser must present; '' for none.
 
     Raises:
-        ConfigurationError: if the token is short, or there is none off the loopback.
+        ConfigurationError: if the token is too short, or is missing for an address other than the
+            loopback.
     """
 
     host: str = '127.0.0.1'
@@ -60,7 +61,9 @@ class Address:
                 f'got {len(self.token)} characters'
             )
         if not self.token and not self.is_loopback:
-            raise ConfigurationError(f'host {self.host!r} is not this machine alone: give a token')
+            raise ConfigurationError(
+                f'host {self.host!r} can be reached from other machines: set a token'
+            )
 
     @property
     def is_loopback(self) -> bool:
@@ -69,7 +72,7 @@ class Address:
 
     @property
     def url(self) -> str:
-        """What to type into a browser; it holds the token."""
+        """The URL to open in a browser, with the token."""
         place = f'http://{_bracketed(_shown_host(self.host))}:{self.port}/'
         return f'{place}?token={self.token}' if self.token else place
 
@@ -81,7 +84,7 @@ class Address:
     def is_host(self, header: str | None) -> bool:
         """Whether a Host header names this server.
 
-        A number is never a foreign name that was made to point here.
+        An IP address is accepted: DNS rebinding needs a host name.
         """
         name, port = _split(header)
         if name is None or port != self.port:
@@ -91,11 +94,11 @@ class Address:
         return _is_number(name) or name in {self.host.lower(), socket.gethostname().lower()}
 
     def is_token(self, given: str | None) -> bool:
-        """Whether a token is the right one; compared in a time that says nothing."""
+        """Whether a token is correct; compared in constant time."""
         return given is not None and secrets.compare_digest(given.encode(), self.token.encode())
 
     def is_admitted(self, cookies: str | None) -> bool:
-        """Whether a Cookie header holds the token, if one is asked for."""
+        """Whether a Cookie header holds the token, if one is required."""
         if not self.token:
             return True
         try:
@@ -106,14 +109,14 @@ class Address:
 
 
 def address_of(host: str, port: int, token: str = '') -> Address:
-    """An address, with a new token if one is needed and none is given."""
+    """An address, with a new token if one is required and none is given."""
     if not token and not is_loopback(host):
         token = secrets.token_urlsafe(32)
     return Address(host, port, token)
 
 
 def is_loopback(host: str) -> bool:
-    """Whether a name or number is of this machine alone."""
+    """Whether a host name or IP address can be reached from this machine alone."""
     if host == 'localhost':
         return True
     try:
@@ -128,16 +131,16 @@ def is_same_origin(origin: str | None, host: str | None) -> bool:
 
 
 class RateLimit:
-    """So many things at once, and then so many in a second, for each client."""
+    """A token bucket for each client: a burst, then a rate [1/s]."""
 
     def __init__(self, burst: int, per_s: float) -> None:
-        """Nobody has done anything yet."""
+        """Start with a full burst for every client."""
         self._burst = burst
         self._per_s = per_s
         self._left: OrderedDict[str, tuple[float, float]] = OrderedDict()
 
     def allows(self, client: str, now_s: float) -> bool:
-        """Whether a client may do another thing at a time of a steady clock [s]."""
+        """Whether a client may send another request at a time of a monotonic clock [s]."""
         left, since_s = self._left.pop(client, (float(self._burst), now_s))
         left = min(self._burst, left + (now_s - since_s) * self._per_s)
         allowed = left >= 1
@@ -168,7 +171,7 @@ def _bracketed(name: str) -> str:
 
 
 def _shown_host(host: str) -> str:
-    """A host that others can type: not the one that stands for all."""
+    """A host that a browser can connect to, instead of the wildcard address."""
     return socket.gethostname() if host in ('0.0.0.0', '::') else host
 
 

@@ -1,4 +1,4 @@
-"""How the nodes are, as they say it themselves."""
+"""The health of the nodes, from their diagnostics."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import Any
 
 LEVELS = ('ok', 'warning', 'error', 'stale')
-"""By the numbers of diagnostic_msgs/DiagnosticStatus."""
+"""Names of the levels of diagnostic_msgs/DiagnosticStatus, by number."""
 SILENT_S = 3.5
-"""Nodes say every second how they are; after so long without a word one is called silent [s]."""
+"""Nodes publish diagnostics every second; one is called silent after this time without any [s]."""
 MOST_NODES = 64
 MOST_VALUES = 32
 MOST_CHARACTERS = 200
@@ -18,12 +18,12 @@ MOST_CHARACTERS = 200
 
 @dataclass(frozen=True)
 class NodeHealth:
-    """What a node said last.
+    """The latest status of a node.
 
     Attributes:
         level: of :data:`LEVELS`.
-        values: whatever it told, by key.
-        heard_s: when, on a steady clock [s].
+        values: of the status, by key.
+        heard_s: time of receipt, on a monotonic clock [s].
     """
 
     name: str
@@ -45,7 +45,7 @@ def health_after(
     values: Iterable[tuple[str, str]],
     heard_s: float,
 ) -> Health:
-    """What is known after a node said how it is. Texts are cut, and nodes beyond a limit left out."""
+    """The health after a status of a node. Texts are cut; nodes beyond a limit are left out."""
     name = _cut(name)
     if name not in health and len(health) >= MOST_NODES:
         return health
@@ -58,7 +58,7 @@ def health_after(
 
 
 def health_json(health: Health, now_s: float, hides_costs: bool) -> list[dict[str, Any]]:
-    """As the page gets it; only names and levels where nothing of the search may be seen."""
+    """The health as JSON for the page; only names and levels while costs are hidden."""
     return [
         {
             'name': node.name,

@@ -1,4 +1,4 @@
-"""The browsers that look, and what they get: the latest there is, some times a second.
+"""The connected browsers; each gets the latest frame several times a second.
 
 Frames are dropped, never queued.
 """
@@ -17,29 +17,29 @@ with extra('page'):
     from aiohttp import WSMsgType, web
 
 FRAME_S = 0.1
-"""Frames are not closer than this [s]."""
+"""Shortest time between frames [s]."""
 QUIET_S = 1.0
-"""So often a frame is sent when there is nothing new [s]."""
+"""Period of frames if nothing has changed [s]."""
 FAREWELL_REPLAYS = 20
-"""That a browser gets when the session is over: it can't ask for them any more."""
+"""Number of replays that a browser gets at the end, as it cannot fetch them later."""
 FAREWELL_S = 0.25
-"""What is left of the session for that [s]."""
+"""Time limit for sending them [s]."""
 
 
 class Mailbox:
-    """The latest there is to see. One thread puts, others look; nobody waits."""
+    """The latest state to show. One thread writes it, others read it, without locks."""
 
     def __init__(self) -> None:
-        """Nothing has been seen."""
+        """Start with an empty state."""
         self.seen = Seen()
 
     def put(self, seen: Seen) -> None:
-        """Replace what was there; it is never changed."""
+        """Replace the state; states are immutable."""
         self.seen = seen
 
 
 class _Client:
-    """A browser that looks: it gets the latest frame, and none that it had no time for."""
+    """A connected browser: it gets the latest frame, and skips frames that it is too slow for."""
 
     def __init__(self, socket: web.WebSocketResponse) -> None:
         self._socket = socket
@@ -51,7 +51,7 @@ class _Client:
         self._has_news.set()
 
     async def send(self) -> None:
-        """Send what is offered, as fast as it is taken at the other end."""
+        """Send the offered frames, as fast as the browser accepts them."""
         while True:
             await self._has_news.wait()
             self._has_news.clear()
@@ -65,10 +65,10 @@ class _Client:
 
 
 class Audience:
-    """All browsers that look; the part of a server that is one-way."""
+    """All connected browsers; the one-way part of the server."""
 
     def __init__(self, mailbox: Mailbox) -> None:
-        """Nobody looks yet."""
+        """Start without browsers."""
         self._mailbox = mailbox
         self._clients: set[_Client] = set()
 
@@ -76,7 +76,7 @@ class Audience:
         return len(self._clients)
 
     async def join(self, socket: web.WebSocketResponse, request: web.Request) -> None:
-        """Send frames on a socket until it is closed; nothing comes in."""
+        """Send frames on a socket until it is closed; incoming messages close it."""
         client = _Client(socket)
         self._clients.add(client)
         try:
@@ -93,7 +93,7 @@ class Audience:
             self._clients.discard(client)
 
     async def broadcast(self) -> None:
-        """Offer every browser what is new; make each frame once."""
+        """Offer every new frame to all browsers; encode each frame once."""
         shown, shown_s = None, 0.0
         while True:
             await asyncio.sleep(FRAME_S)
@@ -109,7 +109,7 @@ class Audience:
         return json.dumps({**frame, 'kind': kind, **more}, separators=(',', ':'))
 
     async def say_farewell(self) -> None:
-        """Tell every browser that the session is over, with what ran last."""
+        """Tell every browser that the session is over, and send the last trials."""
         if not self._clients:
             return
         session = self._mailbox.seen.session

@@ -1,6 +1,6 @@
 """Scenes and records as JSON for the page. Masks are pictures, top row first.
 
-Where a trial hides its costs from the person, no cost, no value and no candidate gets in here.
+If a trial hides its costs from the person, the JSON has no costs, values or candidates.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def rows_of(board: Board, mask: Mask) -> list[str]:
 
 
 def trial_json(spec: TrialSpec, trial_id: str) -> Json:
-    """What does not change while a trial runs."""
+    """The constant properties of a trial."""
     board = spec.task.board
     strategy = spec.strategy
     return {
@@ -67,7 +67,7 @@ def blocks_json(scene: Scene) -> list[Json]:
 
 
 def decision_json(decision: Decision, hidden: bool) -> Json | None:
-    """What was weighed, the best of it if it is much; None if that is hidden."""
+    """The candidates of a decision, the best ones if there are many; None if they are hidden."""
     if hidden:
         return None
     shown = captions.shortlist(decision, MOST_CANDIDATES)
@@ -90,7 +90,7 @@ def decision_json(decision: Decision, hidden: bool) -> Json | None:
 
 
 def step_json(scene: Scene, hidden: bool) -> Json:
-    """What changes while a trial runs."""
+    """The properties of a trial that change while it runs."""
     record, board = scene.record, scene.task.board
     step: Json = {
         'sequence': scene.sequence,
@@ -143,7 +143,7 @@ def proposal_json(board: Board, proposal: Proposal) -> Json:
 
 
 def summary_json(past: Past, hidden: bool) -> Json:
-    """A trial that ran, as a line of a table."""
+    """A finished trial, as a line of a table."""
     record = past.scene.record
     hidden = hidden or record.spec.strategy.hides_costs
     return {
@@ -163,7 +163,7 @@ def summary_json(past: Past, hidden: bool) -> Json:
 
 
 def replay_json(past: Past, hidden: bool) -> Json:
-    """A trial that ran, step by step."""
+    """A finished trial, step by step."""
     scene = past.scene
     record = scene.record
     hidden = hidden or record.spec.strategy.hides_costs

@@ -1,4 +1,4 @@
-"""What the page sends when a person has decided, and whether it can be taken."""
+"""Proposals from the page: decoding, and whether they can be accepted."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _KEYS = {'trial_id', 'sequence', 'number', 'kind', 'region', 'thinking_s'}
 
 
 class MalformedProposal(InvalidInput):
-    """What was sent is no proposal."""
+    """The data from the page is not a proposal."""
 
 
 class Refused(NamedTuple):
-    """A proposal that can't be taken.
+    """A proposal that cannot be accepted.
 
     Attributes:
         code: a word for programs: stale, waiting, empty, outside, built.
@@ -37,21 +37,21 @@ class Refused(NamedTuple):
 
 
 class Posted(NamedTuple):
-    """A proposal as it was sent; ``is_again`` if it was taken before, and is told once more."""
+    """A proposal as it was sent; ``is_again`` if it was accepted before and is repeated."""
 
     said: ProposalMade
     is_again: bool
 
 
 def parse(data: object, board: Board) -> Posted:
-    """Read what the page has sent.
+    """Decode a proposal from the page.
 
     Args:
         data: decoded JSON; the region is a picture, rows of '#' and '.', top row first.
-        board: of the trial that runs.
+        board: of the running trial.
 
     Raises:
-        MalformedProposal: naming the key.
+        MalformedProposal: if the data is invalid; names the key.
     """
     if not isinstance(data, dict) or not _KEYS <= data.keys() <= _KEYS | {'again'}:
         raise MalformedProposal(f'expected an object with the keys {", ".join(sorted(_KEYS))}')
@@ -101,7 +101,7 @@ def _region(rows: object, board: Board) -> Mask:
 
 
 def judge(session: Session, posted: Posted) -> Refused | None:
-    """Whether a proposal can be taken now; None if it can."""
+    """The reason why a proposal cannot be accepted now; None if it can."""
     turn, (said, is_again) = turn_of(session), posted
     proposal = said.proposal
     if (
@@ -114,18 +114,18 @@ def judge(session: Session, posted: Posted) -> Refused | None:
     if is_again:
         return None
     if turn.is_waiting and proposal.kind is not ProposalKind.GIVE_UP:
-        return Refused('waiting', 'the last region is still being looked into')
+        return Refused('waiting', 'the search for the last region is still running')
     if proposal.kind is ProposalKind.BUILD:
         return judge_region(session.scene.task, turn.built, proposal.region)
     return None
 
 
 def judge_region(task: Task, built: Mask, region: Mask) -> Refused | None:
-    """Whether there is something to fill in a region that lies on the board."""
+    """The reason why there is nothing to fill in a region of the board; None if there is."""
     if not region:
         return Refused('empty', 'nothing is drawn')
     if not region & task.silhouette:
-        return Refused('outside', 'the region lies outside the silhouette')
+        return Refused('outside', 'the region is outside the silhouette')
     if is_filled(task, built, region):
         return Refused('built', 'the region is built already')
     return None

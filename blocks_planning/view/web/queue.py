@@ -1,4 +1,4 @@
-"""Which trial of a script runs, and which come next."""
+"""The running trial of a script, and the next ones."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ MOST_COMING = 5
 
 
 class Place(NamedTuple):
-    """Where in the script a trial stands.
+    """The position of a trial in the script.
 
     Attributes:
-        number: of the trial, from 0; None if it is not of the script.
+        number: of the trial, from 0; None if it is not in the script.
         total: trials of the script; 0 if there is no script.
         coming: the next trials.
     """
@@ -25,7 +25,7 @@ class Place(NamedTuple):
 
 
 class Queue:
-    """The trials of a script. They run in its order, so looking for one begins at the last."""
+    """The trials of a script. They run in order, so the search begins at the last one found."""
 
     def __init__(self, specs: Sequence[TrialSpec] = ()) -> None:
         """No trial has run yet."""
@@ -33,7 +33,7 @@ class Queue:
         self._next = 0
 
     def place_of(self, trial_id: str | None) -> Place:
-        """Where a trial stands; None: before the first."""
+        """The position of a trial; None: before the first."""
         index = None if trial_id is None else self._find(trial_id)
         start = self._next if index is None else index + 1
         if index is not None:

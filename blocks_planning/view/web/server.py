@@ -1,7 +1,7 @@
-"""The server of the page: a thread of its own with an event loop of its own.
+"""The server of the page: its own thread with its own event loop.
 
-What there is to see lies in a mailbox; see :mod:`.live`. What a person proposes is handed on, and
-the answer is waited for.
+It reads the state to show from a mailbox; see :mod:`.live`. It forwards the proposals of a person
+and waits for the answers.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ with extra('page'):
 
 MOST_CLIENTS = 16
 MOST_BYTES = 16 * 1024
-"""Of what is accepted."""
+"""Size limit of a request."""
 MOST_REPLAYS = 5
-"""In one answer."""
+"""Number of replays in one response."""
 _BURST, _PER_S = 20, 5.0
 _ANSWER_S = 5.0
 _HEARTBEAT_S = 10.0
@@ -49,20 +49,21 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 class PageServer:
-    """Serves what is in a mailbox.
+    """Serves the content of a mailbox.
 
     Attributes:
-        address: where; with its port once it has been started.
+        address: of the page; has its port after the start.
     """
 
     def __init__(self, address: Address, mailbox: Mailbox, propose: Propose) -> None:
-        """Prepare; nothing is served yet.
+        """Prepare the server; :meth:`start` starts it.
 
         Args:
-            address: where to listen.
-            mailbox: what to show.
-            propose: called, in the server's thread, with what a person has sent, decoded JSON. Its
-                future says why it can't be taken, or None; it raises InvalidInput for nonsense.
+            address: to listen on.
+            mailbox: holds the state to show.
+            propose: called, in the server's thread, with a person's proposal, decoded from JSON.
+                Its future gives the reason of a refusal, or None; it raises InvalidInput for
+                malformed data.
         """
         self.address = address
         self._mailbox = mailbox
@@ -76,14 +77,14 @@ class PageServer:
 
     @property
     def clients(self) -> int:
-        """How many browsers look."""
+        """Number of connected browsers."""
         return len(self._audience)
 
     def start(self) -> None:
-        """Begin to listen.
+        """Start to listen.
 
         Raises:
-            ConfigurationError: if the address can't be listened at.
+            ConfigurationError: if the server cannot listen on the address.
         """
         self._thread.start()
         try:
@@ -127,7 +128,7 @@ class PageServer:
             await runner.cleanup()
 
     def application(self) -> web.Application:
-        """Everything that can be asked for."""
+        """The routes of the server."""
         application = web.Application(middlewares=[self._guard], client_max_size=MOST_BYTES)
         application.on_response_prepare.append(_add_headers)
         for path, (name, kind) in _FILES.items():
@@ -140,38 +141,38 @@ class PageServer:
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        """Let through who may; see :mod:`.guards`."""
+        """Refuse requests without access; see :mod:`.guards`."""
         headers = request.headers
         if not self.address.is_host(headers.get('Host')):
-            return _refusal(403, 'host', 'this server has another name')
+            return _refusal(403, 'host', 'the Host header does not name this server')
         if self.address.token and request.path == '/' and 'token' in request.query:
             return self._admission(request)
         if not self.address.is_admitted(headers.get('Cookie')):
-            return _refusal(401, 'token', 'open the address that was printed, with its token')
+            return _refusal(401, 'token', 'open the printed address, with its token')
         from_page = is_same_origin(headers.get('Origin'), headers.get('Host'))
         if not from_page and (request.method not in ('GET', 'HEAD') or request.path == '/live'):
-            return _refusal(403, 'origin', 'this does not come from the page')
+            return _refusal(403, 'origin', 'the request does not come from the page')
         try:
             return await handler(request)
         except web.HTTPException as error:
             return _refusal(error.status, 'http', error.reason)
 
     def _admission(self, request: web.Request) -> web.StreamResponse:
-        """Keep the token in a cookie, so that it stands in no address any more."""
+        """Store the token in a cookie, and redirect to an address without it."""
         if not self.address.is_token(request.query.get('token')):
-            return _refusal(401, 'token', 'that is not the token that was printed')
+            return _refusal(401, 'token', 'wrong token: open the printed address')
         answer = web.Response(status=303, headers={'Location': '/'})
         answer.set_cookie(
             self.address.cookie, self.address.token, httponly=True, samesite='Strict', path='/'
         )
         return answer
 
-    # What is shown
+    # From the server to the page
 
     async def _live(self, request: web.Request) -> web.StreamResponse:
-        """A socket on which frames go out; nothing comes in."""
+        """A socket that sends frames."""
         if len(self._audience) >= MOST_CLIENTS:
-            return _refusal(503, 'clients', f'{MOST_CLIENTS} browsers are looking already')
+            return _refusal(503, 'clients', f'{MOST_CLIENTS} browsers are connected already')
         socket = web.WebSocketResponse(
             heartbeat=_HEARTBEAT_S, compress=False, max_msg_size=1024, timeout=FAREWELL_S
         )
@@ -179,23 +180,23 @@ class PageServer:
         return socket
 
     async def _trials(self, request: web.Request) -> web.StreamResponse:
-        """The trials that ran, from a number on."""
+        """The finished trials, from a number on."""
         session, first = self._mailbox.seen.session, _number(request, 'from')
         hidden = hides_costs(session)
         found = [summary_json(past, hidden) for past in session.past if past.number >= first]
         return web.json_response(found)
 
     async def _replays(self, request: web.Request) -> web.StreamResponse:
-        """Some trials that ran, step by step, from a number on."""
+        """Replays of finished trials, from a number on."""
         session, first = self._mailbox.seen.session, _number(request, 'from')
         hidden = hides_costs(session)
         found = [past for past in session.past if past.number >= first][:MOST_REPLAYS]
         return web.json_response([replay_json(past, hidden) for past in found])
 
-    # What is said
+    # From the page to the server
 
     async def _proposal(self, request: web.Request) -> web.StreamResponse:
-        """Hand on what a person has proposed."""
+        """Forward a person's proposal."""
         if not self._limit.allows(request.remote or '', time.monotonic()):
             return _refusal(429, 'rate', 'too many proposals at once: wait a second')
         if request.content_type != 'application/json':
@@ -203,7 +204,7 @@ class PageServer:
         try:
             data = json.loads(await request.text())
         except (ValueError, RecursionError):
-            return _refusal(400, 'json', 'that is not JSON')
+            return _refusal(400, 'json', 'the request is not JSON')
         answer = asyncio.wrap_future(self._propose(data))
         try:
             refused = await asyncio.wait_for(answer, _ANSWER_S)
@@ -217,7 +218,7 @@ class PageServer:
 
 
 def _sender(path: Path, kind: str) -> Handler:
-    """Answers with a file that ships with the package."""
+    """A handler that responds with a file of the package."""
     body = path.read_bytes()
 
     async def send(_: web.Request) -> web.StreamResponse:

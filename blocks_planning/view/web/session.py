@@ -1,7 +1,7 @@
-"""What the page knows: the trial that runs, those that ran, and what a person has proposed.
+"""The state behind the page: the running trial, the finished trials, and a person's proposals.
 
-A :class:`Session` is folded from the messages of the graph and never changed, so that the thread
-that serves the page may look at it while the next one is made.
+A :class:`Session` is folded from the messages of the graph. It is immutable, so that the thread of
+the server can read it while the next one is made.
 """
 
 from __future__ import annotations
@@ -36,28 +36,28 @@ from blocks_planning.view.captions import shortlist
 from blocks_planning.view.scene import Scene, first_scene, scene_after
 
 MOST_PAST = 500
-"""Trials that ran and can be replayed; the oldest go first."""
+"""Number of finished trials that can be replayed; the oldest are dropped."""
 MOST_CANDIDATES = 24
-"""Of a decision in a trial that ran; the best are kept."""
+"""Number of candidates kept of a decision in a finished trial; the best are kept."""
 MOST_LATE = 4
-"""So many trials back news may still come: topics are not ordered among each other."""
+"""Number of last trials that messages may still arrive for: there is no order between topics."""
 
 
 class Past(NamedTuple):
-    """A trial that ran; ``number`` counts them from 0."""
+    """A finished trial; ``number`` counts them from 0."""
 
     number: int
     scene: Scene
 
 
 class Turn(NamedTuple):
-    """It is the person's turn, in a state.
+    """A turn of the person, in a state.
 
     Attributes:
         sequence: of the state.
         number: of the next proposal in it.
         built: the filled cells.
-        is_waiting: for an answer to the last proposal, or for what follows from it.
+        is_waiting: whether the result of the last proposal, or its execution, is still open.
     """
 
     sequence: int
@@ -68,12 +68,12 @@ class Turn(NamedTuple):
 
 @dataclass(frozen=True)
 class Session:
-    """What has been seen so far.
+    """The trials and proposals so far.
 
     Attributes:
-        scene: the trial that runs, or was the last to run; None before the first.
+        scene: the running trial, or the last one; None before the first.
         state: the latest of that trial.
-        past: the last trials that ran, the oldest first.
+        past: the last finished trials, the oldest first.
         answers: to the queries of a person's proposals.
         proposals: of a person in that trial, in the order of their numbers in every state.
         told_again: how many proposals of the current state were known before this session.
@@ -88,12 +88,12 @@ class Session:
 
     @property
     def trial_id(self) -> str | None:
-        """Of the trial that runs, or was the last to run."""
+        """Id of the running trial, or of the last one."""
         return None if self.scene is None else self.scene.trial.trial_id
 
     @property
     def count(self) -> int:
-        """How many trials ran, also those that are not kept any more."""
+        """Number of finished trials, including those that are no longer kept."""
         return self.past[-1].number + 1 if self.past else 0
 
 
@@ -101,12 +101,12 @@ Memory = Session
 
 
 def step(memory: Session, message: Message) -> tuple[Session, tuple[Message, ...]]:
-    """Look; there is nothing to say."""
+    """Update the session; no message is sent."""
     return session_after(memory, message), ()
 
 
 def session_after(session: Session, message: Message) -> Session:
-    """The session after a message; what is stale, doubled or of an unknown trial changes nothing."""
+    """The session after a message; stale or repeated messages, or unknown trials, change nothing."""
     scene = session.scene
     if scene is None or message.trial_id != scene.trial.trial_id:
         if isinstance(message, TrialStarted):
@@ -130,7 +130,7 @@ def _is_later(state: WorldState, than: WorldState | None) -> bool:
 
 
 def _closed(session: Session) -> Session:
-    """The current trial among those that ran, if it is not there yet."""
+    """The session with the current trial added to the finished ones, if it is not there yet."""
     scene = session.scene
     if scene is None or any(p.scene.trial == scene.trial for p in session.past[-MOST_LATE:]):
         return session
@@ -139,7 +139,7 @@ def _closed(session: Session) -> Session:
 
 
 def _past_after(past: tuple[Past, ...], message: Message) -> tuple[Past, ...]:
-    """Late news of a trial that ran."""
+    """The finished trials after a late message for one of them."""
     for index in range(len(past) - 1, max(len(past) - 1 - MOST_LATE, -1), -1):
         number, scene = past[index]
         if scene.trial.trial_id == message.trial_id:
@@ -151,7 +151,7 @@ def _past_after(past: tuple[Past, ...], message: Message) -> tuple[Past, ...]:
 
 
 def _trimmed(scene: Scene) -> Scene:
-    """The same, with no more candidates than are kept."""
+    """The scene, with at most ``MOST_CANDIDATES`` candidates per decision."""
     chosen = scene.chosen
     if chosen is None or all(
         len(entry.decision.candidates) <= MOST_CANDIDATES for entry in chosen.decisions
@@ -177,23 +177,23 @@ def _answered(session: Session, spec: TrialSpec, message: SearchAnswer) -> Sessi
 
 
 def _proposed(session: Session, spec: TrialSpec, proposal: Proposal) -> Session:
-    """Taken as the selector takes it: in the order of the numbers."""
+    """Accept a proposal as the selector does: in the order of the numbers."""
     if not spec.strategy.asks_person or out_of_turn(session.proposals, proposal):
         return session
     return replace(session, proposals=(*session.proposals, proposal))
 
 
 def with_told_again(session: Session) -> Session:
-    """The same, when all proposals of the current state were known before this session.
+    """The session, with all proposals of the current state marked as earlier than this session.
 
-    Nobody may be asked about them again, so no answer is waited for.
+    Their answers may never arrive, so the turn does not wait for them.
     """
     sequence = 0 if session.state is None else session.state.sequence
     return replace(session, told_again=len(proposed_at(session.proposals, sequence)))
 
 
 def turn_of(session: Session) -> Turn | None:
-    """Whose turn it is: None if it is not the person's."""
+    """The turn of the person; None if it is not the person's turn."""
     scene, state = session.scene, session.state
     if (
         scene is None
@@ -211,13 +211,13 @@ def turn_of(session: Session) -> Turn | None:
 
 
 def _decides(session: Session, proposal: Proposal, built: Mask) -> bool:
-    """Whether a proposal may end the person's turn: unless it is known that it can't be built."""
+    """Whether a proposal may end the person's turn: true unless it is known to be unsolved."""
     answer = answer_to(session, proposal, built)
     return proposal.kind is ProposalKind.GIVE_UP or answer is None or answer.solved
 
 
 def answer_to(session: Session, proposal: Proposal, built: Mask) -> SolveResult | None:
-    """What was found out about a proposal that was made in a state; None: nothing yet."""
+    """The search result for a proposal that was made in a state; None if there is none yet."""
     if session.scene is None:
         return None
     task = session.scene.task
@@ -225,7 +225,7 @@ def answer_to(session: Session, proposal: Proposal, built: Mask) -> SolveResult 
 
 
 def _is_executing(scene: Scene, state: WorldState) -> bool:
-    """Whether the last subgoal leads on from a state, or there is none because it is given up."""
+    """Whether the last subgoal continues from a state, or the planner has given up."""
     chosen = scene.chosen
     if chosen is None:
         return False

@@ -446,7 +446,7 @@ def test_what_the_server_refuses_is_said(
     drag(page, (0, 0), (0, 0))
     page.route('**/proposal', lambda route: route.continue_(post_data=stale(route)))
     page.get_by_role('button', name='Build this').click()
-    sees(page, '#preview', 'Not taken: the tower has changed meanwhile.')
+    sees(page, '#preview', 'Not accepted: the tower has changed meanwhile.')
     assert '409' in troubles.pop()
 
 

@@ -1,4 +1,4 @@
-"""The board: states, orders and what became of them."""
+"""The board: states, orders and their outcomes."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ def action_to_ros(board: Board, message: PlaceBlock) -> ros.PlaceBlock:
 
 
 def action_from_ros(board: Board, message: ros.PlaceBlock) -> PlaceBlock:
-    """See :class:`PlaceBlock`. Whether the placement is possible is for the world to say."""
+    """See :class:`PlaceBlock`. The world decides whether the placement is possible."""
     block = block_from_ros(message.block, 'block')
     return PlaceBlock(message.trial_id, message.sequence, Placement(block, message.column))
 

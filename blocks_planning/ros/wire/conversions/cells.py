@@ -82,7 +82,7 @@ def block_to_ros(block: Block) -> ros.Block:
 
 
 def placed_from_ros(board: Board, message: ros.Placement, field: str) -> Placed:
-    """A block that lies on the board; whether it can get there is not looked at."""
+    """A block that lies on the board; whether it can be placed there is not checked."""
     size, block = (board.width, board.height), message.block
     placed = _placed(*size, block.width, block.height, message.column, message.row)
     if placed is not None:
@@ -92,7 +92,7 @@ def placed_from_ros(board: Board, message: ros.Placement, field: str) -> Placed:
     raise refuse(field, place, f'a place on the board for a block of {kind}')
 
 
-@lru_cache(maxsize=1 << 14)  # the same blocks are told again in every state
+@lru_cache(maxsize=1 << 14)  # the same blocks are sent again in every state
 def _placed(
     columns: int, rows: int, width: int, height: int, column: int, row: int
 ) -> Placed | None:

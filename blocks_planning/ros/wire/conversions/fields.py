@@ -1,4 +1,4 @@
-"""Refusing what a message can't say, and bounding what it may contain."""
+"""Validation of message fields, and bounds of their contents."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What there is to see in space, as markers: cells become metres."""
+"""Solids as markers: cells become metres."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def markers_to_ros(solids: Iterable[Solid], header: Header, cell_m: float) -> Ma
         header: of every marker.
         cell_m: the side of a cell [m].
     """
-    # The first marker takes everything away. With it in every array the latest one is the whole
-    # scene: for who comes late, and for who has missed some.
+    # The first marker deletes all others. So the latest array is the whole scene, also for a viewer
+    # that starts late or has missed some arrays.
     clear = Marker(header=header, action=Marker.DELETEALL)
     return MarkerArray(markers=[clear, *(_marker(solid, header, cell_m) for solid in solids)])
 

@@ -1,4 +1,4 @@
-"""What a person proposes while scoping."""
+"""Proposals of a person."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def settings_to_ros(values: Mapping[str, Value]) -> list[ros.Setting]:
 
 
 def settings_from_ros(messages: Sequence[ros.Setting], field: str) -> dict[str, Value]:
-    """Settings by name. Whether a member has them, and takes their values, is not looked at."""
+    """Settings by name. Whether a member has them, and accepts their values, is not checked."""
     bounded(messages, field, 0, MOST_SETTINGS)
     values: dict[str, Value] = {}
     for index, message in enumerate(messages):

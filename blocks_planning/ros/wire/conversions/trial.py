@@ -1,4 +1,4 @@
-"""Trials: what is announced, and how it ended."""
+"""Trials: specifications and outcomes."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def ended_to_ros(board: Board | None, message: TrialEnded) -> ros.TrialOutcome:
 
 
 def ended_from_ros(board: Board | None, message: ros.TrialOutcome) -> TrialEnded:
-    """See :class:`TrialEnded`; only whoever wrote the record has it."""
+    """See :class:`TrialEnded`; only the node that wrote the record has it."""
     status = word(TrialStatus, message.status, 'status', _OUTCOME_STATUSES)
     has_failed = message.code == ros.TrialOutcome.CODE_FAILED
     reason = message.reason[:MOST_REASON] if has_failed else ''
@@ -128,7 +128,7 @@ def ended_from_ros(board: Board | None, message: ros.TrialOutcome) -> TrialEnded
 
 
 def refusal(reason: str) -> ros.TrialOutcome:
-    """The outcome of a goal that could not be begun."""
+    """The outcome of a goal that could not start."""
     kind = ros.TrialOutcome
     return kind(
         status=kind.STATUS_REFUSED,

@@ -1,4 +1,4 @@
-// The page: frames come in, the latest is drawn when the browser has time for it.
+// The page: it receives frames, and draws the latest when the browser has time.
 
 import { Board } from './board.js';
 import { Costs, hideCosts, showDeciding } from './costs.js';
@@ -87,7 +87,7 @@ function goLive() {
   if (latest !== null) draw();
 }
 
-/** Between two trials: what came of the last one, in peace. */
+/** Between two trials: the result of the last one. */
 function showBetween(frame) {
   const place = byId('between');
   const isBetween = frame.phase === 'between' && (frame.trial.person || frame.kind === 'over');

@@ -1,4 +1,4 @@
-// The tower: silhouette, blocks, the region of the current subgoal, what is planned in it.
+// The tower: silhouette, blocks, the region of the current subgoal, its planned blocks.
 
 import { area, cellsOf, filledBy, outline } from './cells.js';
 import { byId, say, svg, whenNew } from './dom.js';
@@ -72,7 +72,7 @@ export class Board {
       && same(blocks[kept], this.blocks[kept])) kept += 1;
     const layer = this.layers.blocks;
     while (layer.childElementCount > kept) layer.lastChild.remove();
-    // One block more drops into its place; where many come at once, nobody could follow.
+    // A single new block is animated; several at once would be too fast to follow.
     const drops = kept === this.blocks.length && blocks.length === kept + 1;
     for (const block of blocks.slice(kept)) layer.append(this.#block(block, drops));
     this.blocks = blocks;

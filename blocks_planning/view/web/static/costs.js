@@ -1,4 +1,4 @@
-// What planning has cost so far: numbers, and steps on a logarithmic scale.
+// The planning cost so far: numbers, and steps on a logarithmic scale.
 
 import { byId, html, say, svg, whenNew, whole } from './dom.js';
 

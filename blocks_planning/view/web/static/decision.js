@@ -1,4 +1,4 @@
-// What was weighed in the last decision: a bar for each candidate.
+// The last decision: a bar for each candidate.
 
 import { byId, counted, html, say, svg, whenNew, whole } from './dom.js';
 

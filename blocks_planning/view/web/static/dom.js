@@ -1,4 +1,4 @@
-// Making elements. Texts only ever get in as text, never as markup.
+// Creation of elements. Texts are inserted as text, never as markup.
 
 const SVG = 'http://www.w3.org/2000/svg';
 
@@ -23,7 +23,7 @@ export function byId(id) {
   return document.getElementById(id);
 }
 
-/** Set a text, if it is another one. */
+/** Set a text, if it has changed. */
 export function say(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }

@@ -1,5 +1,5 @@
-// Talking with the server: frames come by a socket, which is opened again when it is lost; what
-// ran is fetched; what a person proposes is posted.
+// Connection to the server: a socket receives frames and is reopened when it is lost; finished
+// trials are fetched; proposals are posted.
 
 const FIRST_PAUSE_MS = 400;
 const LONGEST_PAUSE_MS = 8000;
@@ -74,7 +74,7 @@ export async function fetchFrom(path, first) {
   return answer.json();
 }
 
-/** Post a proposal; null if it was taken, else why not. */
+/** Post a proposal; null if it was accepted, otherwise the reason of the refusal. */
 export async function propose(proposal) {
   try {
     const answer = await fetch('/proposal', {

@@ -1,4 +1,4 @@
-// The person who scopes: when it is their turn, what they have drawn, what became of it.
+// The person who plans: their turn, the drawn region, the results of their proposals.
 
 import { both, pictureOf, without } from './cells.js';
 import { byId, counted, html, say, svg, whenNew } from './dom.js';
@@ -13,7 +13,7 @@ export class Person {
     this.shownAt = 0;
     this.isSending = false;
     this.notice = null;
-    this.told = []; // what was taken, in the state that it is about
+    this.told = []; // the accepted proposals of the current state
     this.showBlocks = whenNew((library) => this.#showBlocks(library));
     this.showSaid = whenNew((said) => this.#showSaid(said));
     byId('confirm').addEventListener('click', () => this.#confirm());
@@ -28,13 +28,13 @@ export class Person {
     });
   }
 
-  /** Whether a frame brings a turn that was not there before. */
+  /** Whether a frame has a new turn. */
   isNewTurn(frame) {
     return frame.turn !== null && frame.turn !== undefined && !frame.turn.waiting
       && keyOf(frame) !== this.turn?.key;
   }
 
-  /** A frame, and whether the tower of that frame is what is seen now. */
+  /** Show a frame; `isSeen`: whether the page shows its tower now, not a replay. */
   show(frame, isSeen) {
     if (frame.kind === 'over') this.told = []; // the next session is another one
     const isPerson = frame.trial?.person === true;
@@ -110,7 +110,7 @@ export class Person {
     if (this.notice) text = this.notice;
     else if (drawn && toFill) text = `${counted(toFill, 'cell')} to fill${notes ? ` (${notes})` : ''}.`;
     else if (drawn && built) text = 'All of it is built already: draw over cells that are still empty.';
-    else if (drawn) text = 'This lies outside the silhouette: draw over the grey cells.';
+    else if (drawn) text = 'This is outside the silhouette: draw over the grey cells.';
     say(place, text);
     place.dataset.check = this.notice || (drawn && !toFill) ? 'bad' : drawn ? 'good' : 'none';
     this.#enable();
@@ -143,7 +143,7 @@ export class Person {
     this.#enable();
     const refused = await propose(proposal);
     this.isSending = false;
-    this.notice = refused === null ? null : `Not taken: ${refused}.`;
+    this.notice = refused === null ? null : `Not accepted: ${refused}.`;
     if (refused === null) {
       this.#remember(proposal);
       this.drawing.clear();
@@ -155,7 +155,7 @@ export class Person {
       && one.sequence === proposal.sequence), proposal];
   }
 
-  /** A server that was started anew must hear again what was said in this state. */
+  /** Send the proposals of this state again to a restarted server. */
   async #tellAgain(untold) {
     if (this.isSending) return;
     this.isSending = true;
@@ -195,7 +195,7 @@ export class Person {
   #showSaid([proposals]) {
     byId('said-box').hidden = proposals.length === 0;
     const words = {
-      built: 'built', failed: 'could not be built', searching: 'being looked into',
+      built: 'built', failed: 'could not be built', searching: 'searching',
       withdrawn: 'withdrawn', give_up: 'gave up',
     };
     byId('said').replaceChildren(...proposals.map((one) => {

@@ -1,4 +1,4 @@
-// Going through a trial that ran, step by step.
+// Replay of a finished trial, step by step.
 
 import { byId, say } from './dom.js';
 
@@ -7,7 +7,7 @@ const PLAY = 'M2 1v10l8-5z';
 const PAUSE = 'M2 1h3v10H2zM7 1h3v10H7z';
 
 export class Replay {
-  /** `onStep` gets the view of a step; `onEnd` is called when the person goes back to live. */
+  /** `onStep` gets the view of a step; `onEnd` is called when the user goes back to live. */
   constructor(onStep, onEnd) {
     this.onStep = onStep;
     this.onEnd = onEnd;
@@ -52,7 +52,7 @@ export class Replay {
     }
   }
 
-  /** Show a step that somebody has chosen; playing stops. */
+  /** Show a step that the user has chosen; playing stops. */
   go(at) {
     this.#play(false);
     this.#show(at);

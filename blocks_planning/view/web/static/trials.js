@@ -1,17 +1,17 @@
-// The trials of the session: the one that runs, those that come, those that ran. What ran is
-// fetched bit by bit, so that it can be replayed when the server is gone.
+// The trials of the session: running, next, finished. Finished trials are fetched one after the
+// other, so that they can be replayed when the server has ended.
 
 import { byId, counted, html, nameOf, say, whenNew, whole } from './dom.js';
 import { fetchFrom } from './net.js';
 
 const MOST_KEPT = 500;
-const LATE = 4; // there may still be news of the last ones
+const LATE = 4; // the last trials may still change
 const LOOK_MS = 1000;
 const PAGE = 30;
 const SIGNS = { success: '✓', building: '…', cancelled: '–' };
 
 export class Trials {
-  /** `onReplay` gets a trial that ran, step by step, when somebody wants to see it. */
+  /** `onReplay` gets a finished trial, step by step, when the user replays it. */
   constructor(onReplay) {
     this.onReplay = onReplay;
     this.count = 0;
@@ -29,7 +29,7 @@ export class Trials {
   }
 
   take(frame) {
-    if (frame.past < this.count) this.#forget(); // another session is served here now
+    if (frame.past < this.count) this.#forget(); // the server now has another session
     const isNew = frame.past !== this.count;
     this.count = frame.past;
     this.showQueue({
@@ -52,7 +52,7 @@ export class Trials {
     if (isSettled && this.replays.has(number)) return this.onReplay(this.replays.get(number));
     try {
       this.#keep([], await fetchFrom('/replays', number));
-    } catch { /* what was kept will do */ }
+    } catch { /* use the kept replay */ }
     const kept = this.replays.get(number);
     return kept === undefined ? undefined : this.onReplay(kept);
   }
@@ -93,11 +93,11 @@ export class Trials {
       }
       const wanted = this.#wanted();
       if (wanted !== null) this.#keep([], await fetchFrom('/replays', wanted));
-    } catch { /* the link says it */ }
+    } catch { /* the connection status shows it */ }
     this.isLooking = false;
   }
 
-  /** From where on to fetch replays: the latest that are settled and not kept yet. */
+  /** Number from which to fetch replays: the latest that are settled and not kept yet. */
   #wanted() {
     const oldest = Math.max(0, this.count - MOST_KEPT);
     for (let number = this.count - 1 - LATE; number >= oldest; number -= 1) {
