@@ -51,7 +51,7 @@ def sequences(
     finished: list[tuple[Cells, ...]] = []
     order: dict[tuple[Cells, ...], tuple[int, ...]] = {(): ()}
     for length in range(1, horizon + 1):
-        longer = []
+        longer: list[tuple[Cells, ...]] = []
         for sequence in grown:
             for number, region in enumerate(ways(built.union(*sequence))):
                 following = (*sequence, region)
