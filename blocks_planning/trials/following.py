@@ -69,12 +69,8 @@ class _Board:
         self._built = mask_of(spec.task.board, spec.built)
 
     def status(self) -> TrialStatus:
-        """How the board stands; cancelled if there may be no more observations."""
-        found = status_of(self._spec, self._blocks, self._built)
-        is_full = len(self.observations) >= MAX_OBSERVATIONS
-        if found is TrialStatus.BUILDING and is_full:
-            return TrialStatus.CANCELLED
-        return found
+        """How the board stands."""
+        return status_of(self._spec, self._blocks, self._built)
 
     def situation(self, decisions: int, known: MutableMapping[Query, SolveResult]) -> Situation:
         """What the planner decides on."""
@@ -109,8 +105,10 @@ class _Board:
         return self.status(), self._built == subgoal.target or spec.strategy.is_blind
 
     def _order(self, placement: Placement) -> TrialStatus:
-        """Give one order; a lost block changes nothing, and is ordered again."""
+        """Give one order, or cancel the trial if there may be no more observations."""
         spec = self._spec
+        if len(self.observations) >= MAX_OBSERVATIONS:
+            return TrialStatus.CANCELLED
         seen = spec.world.carry_out(
             spec.task, self._built, placement, spec.seed, len(self.observations)
         )
