@@ -52,16 +52,17 @@ def search_of(spec: TrialSpec) -> str:
 
 
 def _with_settings(thing: Any) -> str:
-    """A name with its settings: numbers always, words where they are not the default."""
+    """A name with its first setting, if that is a number, and all that are not the default."""
     return ', '.join([thing.name, *_settings(thing)])
 
 
 def _settings(thing: Any) -> Iterator[str]:
-    for attribute, known in described(type(thing)):
+    for number, (attribute, known) in enumerate(described(type(thing))):
         value = getattr(thing, attribute)
         if known.family is not None:
-            value = value.name if value.name != known.default else known.default
-        if isinstance(value, (int, float)) or value != known.default:
+            value = value.name
+        is_main = number == 0 and isinstance(value, (int, float))
+        if is_main or value != known.default:
             text = f'{value:,}' if isinstance(value, int) else f'{value}'
             yield f'{known.name} {text}'
 

@@ -249,7 +249,9 @@ def test_stopped_recorder_finishes_its_bag(
         peer.wait_for_listeners()
         peer.say(said)
         graph.spin_until(lambda: flushed(bag) == len(said))
-        assert stop(process, number) == (0, '')
+        code, printed = stop(process, number)
+        assert code == 0
+        assert [line for line in printed.splitlines() if not line.startswith('[INFO]')] == []
     assert is_finished(bag)
     assert recorded(bag) == expected(graph, said)
     assert len(list(bag.glob('*.mcap'))) > 1
