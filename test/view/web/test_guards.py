@@ -32,7 +32,7 @@ def test_off_the_loopback_there_is_a_token_always(host: str) -> None:
     assert one.token != other.token
     assert one.token in one.url
     assert address_of(host, 80, TOKEN).token == TOKEN
-    with pytest.raises(ConfigurationError, match='give a token'):
+    with pytest.raises(ConfigurationError, match='set a token'):
         Address(host, 80)
 
 
