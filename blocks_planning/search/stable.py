@@ -116,16 +116,16 @@ def _attempts(finder: _Finder, start: _Tower, seed: int, budget: int) -> SolveRe
     while True:
         generator = Generator([seed, *words, number])
         try:
-            path, cost = finder.attempt(start, generator)
+            complete, path, cost = finder.attempt(start, generator)
         except _Cancelled:
             cost = finder.evaluated
             return SolveResult(SolveStatus.CANCELLED, planning_cost=cost, attempts=number)
         total += cost
         number += 1
-        if path is not None:
+        if complete:
             return SolveResult(SolveStatus.SOLVED, path, cost, total, number)
         if total >= budget or number >= budget:
-            return SolveResult(SolveStatus.BUDGET_EXHAUSTED, planning_cost=total, attempts=number)
+            return SolveResult(SolveStatus.BUDGET_EXHAUSTED, (), 0, total, number, path)
 
 
 class _Finder:
@@ -144,19 +144,19 @@ class _Finder:
         self._stays = stays
         self._cancel = cancel
 
-    def attempt(self, tower: _Tower, generator: Generator) -> tuple[Path | None, int]:
-        """One attempt: the path to the filled region or None, and states evaluated."""
+    def attempt(self, tower: _Tower, generator: Generator) -> tuple[bool, Path, int]:
+        """One attempt: whether it filled the region, its placements, and states evaluated."""
         path: Path = ()
         cost = 0
         while tower.built != self.problem.region:
             choice = self._choose(tower, generator)
             cost += choice.evaluated
             if not choice.path:
-                return None, cost
+                return False, path, cost
             for placed in choice.path:
                 tower = self._placed(tower, placed)
             path += choice.path
-        return path, cost
+        return True, path, cost
 
     def has_child(self, tower: _Tower) -> bool:
         """Whether a legal placement is left after which the tower stays up."""

@@ -241,7 +241,7 @@ def test_the_true_record_holds_and_something_happened() -> None:
     assert any(seen.landed and not seen.is_as_ordered for seen in SLIPPED.observations[1:])
 
 
-@pytest.mark.parametrize(('name', 'data'), falsified(), ids=lambda value: str(value)[:14])
+@pytest.mark.parametrize(('name', 'data'), list(falsified()), ids=lambda value: str(value)[:14])
 def test_what_was_not_drawn_is_found(name: str, data: dict[str, Any]) -> None:
     assert found(data), name
 
