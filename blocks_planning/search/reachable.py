@@ -146,6 +146,6 @@ def _slots_for(size: int) -> int:
 def _too_large(problem: Problem, limit: int) -> LimitExceeded:
     board = problem.task.board
     return LimitExceeded(
-        f'exact-policy: more than the limit of {limit} states lead to this silhouette of '
-        f'{board.width} x {board.height} cells; allow more with --limit, or take a smaller one'
+        f'more than the limit of {limit} states can be reached on this silhouette of '
+        f'{board.width} x {board.height} cells'
     )
