@@ -211,9 +211,7 @@ def read_planners(listed: Located, make: Callable[[object, Mapping[str, Any]], A
     return things
 
 
-def _check_each(
-    entries: Mapping[str, Located], make: Callable[[Mapping[str, Any]], Any]
-) -> None:
+def _check_each(entries: Mapping[str, Located], make: Callable[[Mapping[str, Any]], Any]) -> None:
     """Check the first value of every setting at its own line.
 
     Words come first, because one of them (``regions``) can decide which other settings there are.
