@@ -1,4 +1,4 @@
-"""Have the kernels ready before the first trial."""
+"""Compiles the kernels before the first trial."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from blocks_planning.search.solve import solve
 
 
 def warm_up() -> None:
-    """Have every kernel for boards of up to 64 cells compiled, or loaded from the cache."""
+    """Compile every kernel for boards of up to 64 cells, or load it from the cache."""
     board = Board(2, 2)
     problem = Problem(Task(board, board.full), 0, board.full)
     for search in SEARCHES.values():
