@@ -35,7 +35,7 @@ def read_trials(folder: Path) -> pd.DataFrame:
     """
     path = folder / 'trials.parquet'
     if not path.is_file():
-        raise InvalidInput(f'{path}: is not there; has the sweep been finished?')
+        raise InvalidInput(f'{path}: does not exist; has the sweep been finished?')
     trials = pd.read_parquet(path)
     for name in (*_WORDS, *_WORD_SETTINGS):
         trials[name] = trials[name].astype('category')

@@ -18,13 +18,13 @@ COSTS = ('shown', 'hidden')
 
 @dataclass(frozen=True)
 class Human(Planner):
-    """Regions of any shape, proposed by a person one after the other until one can be built."""
+    """A person proposes regions of any shape, one after the other, until one can be built."""
 
     name: ClassVar[str] = 'human'
     asks_person: ClassVar[bool] = True
     participant: str = setting(
         '',
-        'Code of the person; no personal data.',
+        'Code of the person; do not use personal data.',
         pattern=r'[A-Za-z0-9_-]{0,32}',
         expected='a code of up to 32 letters, digits, _ and -',
     )

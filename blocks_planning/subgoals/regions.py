@@ -96,11 +96,11 @@ class Rectangles(Configured):
 
     name: ClassVar[str] = 'rectangles'
     min_cells: int = setting(
-        2, 'Fewest target cells of a rectangle.', least=1, most=MAX_CELLS, unit='cells'
+        2, 'Smallest number of target cells in a rectangle.', least=1, most=MAX_CELLS, unit='cells'
     )
     max_cells: int = setting(
         0,
-        'Most target cells of a rectangle; 0: three quarters of the silhouette.',
+        'Largest number of target cells in a rectangle; 0: three quarters of the silhouette.',
         least=0,
         most=MAX_CELLS,
         unit='cells',

@@ -58,7 +58,7 @@ def cells_of_blocks(value: dict[str, Any], y: str, place: str) -> Cells:
 def _number(block: dict[str, Any], key: str, where: str) -> int:
     """A coordinate or a size of a block."""
     if key not in block:
-        raise StimulusError(f'{where}: lacks the key {key!r}')
+        raise StimulusError(f'{where}: missing key {key!r}')
     value = block[key]
     low, high = (1, MAX_SIDE) if key in _SIZES else (-MAX_COORDINATE, MAX_COORDINATE)
     whole = isinstance(value, (int, float)) and not isinstance(value, bool) and value % 1 == 0

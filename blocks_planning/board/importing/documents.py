@@ -23,7 +23,7 @@ def parse_json(text: str, origin: str) -> Any:
         entries: dict[str, Any] = {}
         for key, value in items:
             if key in entries:
-                raise StimulusError(f'{origin}: key {shown(key)} is there twice')
+                raise StimulusError(f'{origin}: key {shown(key)} appears twice')
             entries[key] = value
         return entries
 
