@@ -37,7 +37,7 @@ _FROM_ROS: dict[str, Callable[[Board, Any], Message]] = {
 }
 _KINDS = (_TRIAL, _OUTCOME, *_FROM_ROS)
 _MOST_OPEN = 8
-"""Number of later trials after which no message of a trial is expected. (Topics are not ordered.)"""
+"""Number of later trials after which no message of a trial is expected (topics are unordered)."""
 _VERSION1 = (
     'blocks',
     'subgoals',
@@ -81,7 +81,7 @@ class _Heard:
         if kind == _OUTCOME:
             outcome = _outcome_from_ros(self, message, is_old)
             if self.outcome not in (None, outcome):
-                raise BagError('the trial ended already, in another way')
+                raise BagError('the trial had already ended with another outcome')
             self.outcome = outcome
         else:
             converted = _FROM_ROS[kind](self.board, message)
@@ -108,7 +108,7 @@ class _Listener:
         """
         kind, message, file = entry
         if message is None:
-            self._refuse(f'what was sent as a {kind} was refused: its bytes are none')
+            self._refuse(f'a message on a topic of {kind} was refused: its bytes are invalid')
             return
         trial_id = message.trial_id
         kinds = self._kinds_in.setdefault(file, set())
@@ -132,7 +132,7 @@ class _Listener:
         except InvalidInput as error:
             self._refuse(f'a {kind} of trial {shown(trial_id)} was refused: {error}')
         except AttributeError as error:
-            raise BagError(f'was recorded with another kind of {kind}: {error}') from None
+            raise BagError(f'was recorded with another definition of {kind}: {error}') from None
 
     def _announce(self, message: Any, file: int) -> None:
         if version1.is_of_version1(_TRIAL, message):
@@ -142,7 +142,7 @@ class _Listener:
         if trial_id not in self.trials:
             self.trials[trial_id] = _Heard(scribe.Memory(started), file)
         elif self.trials[trial_id].memory.trial != started:
-            raise BagError('it was announced already, as another one')
+            raise BagError('it was already announced with another specification')
         if file and len(self._kinds_in[file]) < len(_KINDS):
             self.trials[trial_id].spans_files = True
         for held in self._inbox.take(trial_id):

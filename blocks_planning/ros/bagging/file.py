@@ -44,10 +44,10 @@ class _Outbox:
         return self._written + len(self._waiting)
 
     def flush(self) -> None:
-        """For the writer: it need not know what is on disk."""
+        """Required by the writer; does nothing."""
 
     def send(self) -> None:
-        """See everything on disk, or leave there what was."""
+        """Write everything to disk, or leave the file unchanged."""
         sent = 0
         try:
             with memoryview(self._waiting) as waiting:
@@ -80,7 +80,7 @@ class BagFile:
             name: what it will be called, if not as in ``path``.
 
         Raises:
-            OSError: if the disk does not take it.
+            OSError: if it cannot be written.
         """
         self.name = name or path.name
         self.counts: Counter[str] = Counter()
@@ -134,7 +134,7 @@ class BagFile:
         """Write all messages to disk.
 
         Raises:
-            OSError: if the disk does not take them; they wait for the next flush.
+            OSError: if they cannot be written; they wait for the next flush.
         """
         self._writer.flush()
         self._in_chunk = 0
@@ -152,7 +152,7 @@ class BagFile:
         """Add the index. If that fails the file stays as after the last flush.
 
         Raises:
-            OSError: if the disk does not take it.
+            OSError: if it cannot be written.
         """
         try:
             self.flush()
@@ -184,7 +184,7 @@ def read_summary(path: Path) -> FileSummary | None:
             counts: Counter[str] = Counter()
             for number, count in statistics.channel_message_counts.items():
                 counts[topics[number].name] += count
-        except Exception:  # noqa: BLE001  whatever bytes lead to that are not as written
+        except Exception:  # noqa: BLE001  damaged bytes can lead to any exception
             return None
     if not counts.total():
         return FileSummary(path.name, list(topics.values()), {})

@@ -75,12 +75,12 @@ class RecordedTrial:
         if outcome is not None and self._has_gap:
             found = record.placements
             if record.spec.world.obeys and outcome.placements[: len(found)] != found:
-                yield 'the outcome has other placements than the messages that led there'
+                yield 'the placements of the outcome differ from those of the earlier messages'
             yield from verify.contradictions(begun(record))
             return
         if outcome is not None and record.status is TrialStatus.BUILDING:
             status = outcome.status.value
-            yield f'the outcome says {status!r}, but messages that lead there are not in the bag'
+            yield f'the outcome has status {status!r}, but the bag lacks the messages that lead to it'
             return
         if outcome is not None:
             yield from _differences(record, outcome)
@@ -96,7 +96,7 @@ def _differences(record: TrialRecord, outcome: Outcome) -> Iterator[str]:
     }
     for name, value in published.items():
         if value != found[name]:
-            yield f'the outcome says {name} {_show(value)}, the messages {_show(found[name])}'
+            yield f'the outcome has {name} {_show(value)}, the messages give {_show(found[name])}'
 
 
 def _show(value: object) -> str:

@@ -118,7 +118,7 @@ def write_metadata(directory: Path, files: Sequence[FileSummary]) -> None:
     """Write ``metadata.yaml`` as a whole, or not at all.
 
     Raises:
-        OSError: if the disk does not take it.
+        OSError: if it cannot be written.
     """
     temporary = directory / f'{METADATA}.new'
     with temporary.open('w', encoding='utf-8') as file:
@@ -140,7 +140,7 @@ def listed_files(directory: Path) -> Iterable[str] | None:
 
 
 def sync_directory(directory: Path) -> None:
-    """See the names of a directory on disk."""
+    """Flush the names of a directory to disk."""
     descriptor = os.open(directory, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -50,9 +50,9 @@ class Repair(NamedTuple):
     aside_bytes: int
 
     def __str__(self) -> str:
-        said = f'{self.path}: was cut off; kept {self.messages} messages'
+        said = f'{self.path}: was truncated; kept {self.messages} messages'
         if self.aside_bytes:
-            said += f', put the last {self.aside_bytes} bytes into {self.aside.name}'
+            said += f', moved the last {self.aside_bytes} bytes to {self.aside.name}'
         return said
 
 
@@ -124,7 +124,7 @@ def claim(directory: Path) -> int:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         os.close(descriptor)
-        raise BagError(f'{directory}: is being recorded by another process') from None
+        raise BagError(f'{directory}: another process is recording it') from None
     return descriptor
 
 
@@ -136,7 +136,7 @@ def repair_claimed(directory: Path) -> tuple[list[FileSummary], list[Repair]]:
 
     Raises:
         BagError: if it can't be.
-        OSError: if the disk does not take it.
+        OSError: if it cannot be written.
     """
     repairs = [_repair_file(path) for path in _files_of(directory) if read_summary(path) is None]
     summaries = [read_summary(path) for path in _files_of(directory)]
@@ -207,7 +207,7 @@ def _is_torn_header(begin: bytes, path: Path) -> bool:
     if len(begin) < len(_header()) and _header().startswith(begin):
         return True
     if not begin.startswith(MCAP0_MAGIC):
-        raise BagError(f'{path}: is no MCAP file')
+        raise BagError(f'{path}: is not an MCAP file')
     try:
         header = Header.read(ReadDataStream(BytesIO(begin[len(MCAP0_MAGIC) + _FRAME.size :])))
         library = header.library
@@ -215,7 +215,7 @@ def _is_torn_header(begin: bytes, path: Path) -> bool:
         library = ''
     if not library.startswith(_OURS):
         raise BagError(
-            f'{path}: has no index: it was cut off, or is being written; '
+            f'{path}: has no index: it is truncated, or is being written; '
             f'only files that {_OURS} wrote can be repaired'
         )
     return False
@@ -242,7 +242,7 @@ def _copy_messages(file: BinaryIO, size: int, whole: BagFile) -> int:
                     channels[record.id] = record.topic
             messages = [record for record in records if isinstance(record, Message)]
             topics = [channels[message.channel_id] for message in messages]
-        except Exception:  # noqa: BLE001  whatever bytes lead to that are not as written
+        except Exception:  # noqa: BLE001  damaged bytes can lead to any exception
             break
         for topic, message in zip(topics, messages, strict=True):
             whole.write(
