@@ -1,4 +1,4 @@
-"""What planners built, in the form in which people's builds are kept."""
+"""The builds of planners, in the same form as those of people."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ with extra('experiments'):
     import pandas as pd
 
 NAMED_BY = ('search', 'strategy', 'regions', 'horizon')
-"""Columns of the table of trials that tell planners apart; those that it has are used."""
+"""Columns of the table of trials that distinguish planners, if present."""
 
 
 def builds_of_records(records: Iterable[TrialRecord]) -> list[Build]:
