@@ -23,15 +23,15 @@ def cells_of_blocks(value: dict[str, Any], y: str, place: str) -> Cells:
     """The cells that the blocks of a list fill.
 
     Args:
-        value: with the key 'blocks'; other keys of it and of its blocks, such as colours, are
-            left alone.
+        value: with the key 'blocks'; other keys of the list and of its blocks, such as colours,
+            are ignored.
         y: 'up' if y is the lowest row of a block, counted upwards; 'down' if it is its top row,
             counted downwards.
         place: where it comes from, for messages.
 
     Raises:
         StimulusError: naming place, key and value, for a block without one of its four keys, a
-            value that is no whole number in its range, or two blocks in one cell.
+            value that is not a whole number in its range, or two blocks in one cell.
     """
     blocks = value['blocks']
     if not isinstance(blocks, list) or not 1 <= len(blocks) <= MAX_BLOCKS:
