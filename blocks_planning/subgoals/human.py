@@ -1,4 +1,4 @@
-"""A person scopes: the paradigm that the paper announces in its discussion."""
+"""A person as the planner: the paradigm that the paper announces in its discussion."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Human(Planner):
 
 
 def used(situation: Situation, decision: Decision) -> tuple[Proposal, ...]:
-    """The proposals of a state that led to a decision: up to the one that decided."""
+    """The proposals of a state that led to a decision, up to the decisive one."""
     asking = list(decisive(situation.task, decision.built, situation.proposals))
     last = asking[len(decision.candidates) - (decision.chosen is not None)]
     return situation.proposals[: last.number + 1]

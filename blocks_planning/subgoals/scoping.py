@@ -99,7 +99,7 @@ class Scoping(Planner):
         return value_of(cells, planning_cost, self.lam)
 
     def subgoals_of(self, chain: Chain) -> Chain:
-        """The first region; after it, scoping looks again."""
+        """The first region; scoping decides again after it."""
         return chain[:1]
 
     def execute(self, plan: int) -> int:
