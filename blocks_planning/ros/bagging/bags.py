@@ -1,8 +1,8 @@
-"""Reading trials back from a bag, with no graph running and no middleware.
+"""Reading trials from a bag, without a running graph and without middleware.
 
 The messages of each trial go through the same conversions as on the graph and through the scribe,
-so that the record of a trial is made from the bag alone. Where one file of a bag ends and the next
-begins messages may be missing: the recorder may have been killed, and started again later.
+so the record of a trial is rebuilt from the bag alone. Messages may be missing between the end of
+one file of a bag and the begin of the next: the recorder may have been killed and restarted later.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class _Heard:
         return RecordedTrial(trial_id, record, outcome, self.spans_files)
 
     def take(self, kind: str, message: Any) -> None:
-        """Take a message of this trial, of any version."""
+        """Handle a message of this trial, of any version."""
         assert self.memory.trial is not None
         is_old = version1.is_of_version1(kind, message)
         if is_old:
@@ -90,7 +90,7 @@ class _Heard:
 
 
 class _Listener:
-    """Takes the messages of a bag one by one, and sorts them by trial."""
+    """Handles the messages of a bag one by one, and sorts them by trial."""
 
     def __init__(self, refuse: Callable[[str], None]) -> None:
         self.trials: dict[str, _Heard] = {}
@@ -149,7 +149,7 @@ class _Listener:
             self.hear(held)
 
     def oldest(self) -> RecordedTrial:
-        """The trial that was announced first, of which no further message comes."""
+        """Remove the trial that was announced first; no further message of it is expected."""
         trial_id = next(iter(self.trials))
         self.finished.add(trial_id)
         return self.trials.pop(trial_id).trial()

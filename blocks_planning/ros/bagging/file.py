@@ -26,7 +26,7 @@ _MESSAGE_OVERHEAD = 31  # [bytes]
 
 
 class _Outbox:
-    """The end of a file that is not on disk yet; bytes that a full disk refuses stay in memory."""
+    """The part of a file that is not on disk yet; it stays in memory while the disk is full."""
 
     def __init__(self, path: Path) -> None:
         self._disk = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
@@ -73,11 +73,11 @@ class BagFile:
     """
 
     def __init__(self, path: Path, name: str | None = None) -> None:
-        """Make the file, which must not exist.
+        """Create the file, which must not exist.
 
         Args:
             path: where to write it.
-            name: what it will be called, if not as in ``path``.
+            name: its final name, if that differs from ``path``.
 
         Raises:
             OSError: if it cannot be written.
@@ -142,14 +142,14 @@ class BagFile:
             self._outbox.send()
 
     def summary(self) -> FileSummary:
-        """What is in the file, waiting or not."""
+        """The content of the file, including waiting messages."""
         topics = [topic for _, topic in self._topics.values()]
         if not self.counts:
             return FileSummary(self.name, topics, {})
         return FileSummary(self.name, topics, dict(self.counts), self._start_ns, self._end_ns)
 
     def close(self) -> None:
-        """Add the index. If that fails the file stays as after the last flush.
+        """Add the index. If that fails, the file stays as it was after the last flush.
 
         Raises:
             OSError: if it cannot be written.
@@ -165,7 +165,7 @@ class BagFile:
 
 
 def read_summary(path: Path) -> FileSummary | None:
-    """What is in a file; None if it does not end with its index.
+    """The content of a file; None if it does not end with its index.
 
     Raises:
         OSError: if it can't be opened.
