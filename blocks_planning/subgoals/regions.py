@@ -92,7 +92,10 @@ class Rows(Configured):
 
 @dataclass(frozen=True)
 class Rectangles(Configured):
-    """The target cells inside a rectangle; :mod:`.rectangles` has the conditions."""
+    """The target cells inside a rectangle of the grid.
+
+    The conditions are in :mod:`.rectangles`.
+    """
 
     name: ClassVar[str] = 'rectangles'
     min_cells: int = setting(
