@@ -181,7 +181,10 @@ def test_imbalance_by_hand() -> None:
 
 @pytest.mark.parametrize(
     ('sets', 'names', 'said'),
-    [(4, ['cells'], 'need at least 8 towers, got 6'), (2, ['holes'], "measure 'holes' is missing")],
+    [
+        (4, ['cells'], 'need at least 8 towers, got 6'),
+        (2, ['holes'], "measure 'holes' is missing"),
+    ],
 )
 def test_sets_that_cannot_be_are_refused(sets: int, names: list[str], said: str) -> None:
     with pytest.raises(ConfigurationError, match=said):
