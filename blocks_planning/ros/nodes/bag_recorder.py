@@ -4,9 +4,10 @@ The bag is a rosbag2 directory of MCAP files, see :mod:`.bagging`. Killing the n
 cut, loses at most the last ``flush_period_s``; after a restart it repairs the bag and continues.
 When the disk is full it warns once, keeps the messages for a while, and tries again.
 
-| | | |---|---| | subscribes | every topic | | parameters | `bag_dir`: a folder that does not exist,
-or holds a truncated bag; `flush_period_s`: period of writing to disk; `split_bytes`: file size at
-which another file begins, 0: never |
+| | |
+|---|---|
+| subscribes | every topic |
+| parameters | `bag_dir`: a folder that does not exist, or holds a truncated bag; `flush_period_s`: period of writing to disk; `split_bytes`: file size at which another file begins, 0: never |
 """
 
 from __future__ import annotations

@@ -7,11 +7,12 @@ A trial that cannot continue, because a node is missing for too long or a disk i
 status ``cancelled`` and the reason in its outcome. The script then ends with exit code 1; after a
 new start it continues with that trial.
 
-| | | |---|---| | subscribes | `state`, `subgoal` (latched), `action/outcome` (stream) | | publishes
-| `trial`, `outcome` (latched) | | action | `run_trial`: feedback with every state and subgoal;
-cancelling ends the trial | | parameters | `remind_period_s`; `frame_id`; `script`; `participant`:
-code of the person who scopes; `out_dir`: folder of `trials.jsonl`; `wait_for`: nodes that must be
-present; `peer_timeout_s`: how long to wait for a missing one, before a trial and during it |
+| | |
+|---|---|
+| subscribes | `state`, `subgoal` (latched), `action/outcome` (stream) |
+| publishes | `trial`, `outcome` (latched) |
+| action | `run_trial`: feedback with every state and subgoal; cancelling ends the trial |
+| parameters | `remind_period_s`; `frame_id`; `script`; `participant`: code of the person who plans; `out_dir`: folder of `trials.jsonl`; `wait_for`: nodes that must be present; `peer_timeout_s`: how long to wait for a missing one, before a trial and during it |
 """
 
 from __future__ import annotations

@@ -4,13 +4,12 @@ The node subscribes to the graph and puts the current session into a mailbox; a 
 thread shows it (:mod:`blocks_planning.view.web`). The node checks the proposals from the page
 against its session, and publishes the valid ones.
 
-| | | |---|---| | subscribes | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched)
-| | publishes | `subgoal/proposal` (latched) | | also subscribes | `/diagnostics` of the nodes in
-its namespace; `search/result`, unless its script has no trial of a person (the answers are many) |
-| parameters | `remind_period_s`; `frame_id`; `host`: address to listen on, other than this machine
-needs a token; `port`: port to listen on, 0: any free one; `token`: access token, '': that of the
-environment, or a new one if one is needed; `script`: trial script, to count its trials, '': no
-count; `participant`: code of the person of its trials, '': as in the script |
+| | |
+|---|---|
+| subscribes | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched) |
+| publishes | `subgoal/proposal` (latched) |
+| also subscribes | `/diagnostics` of the nodes in its namespace; `search/result`, unless its script has no trial of a person (the answers are many) |
+| parameters | `remind_period_s`; `frame_id`; `host`: address to listen on, other than this machine needs a token; `port`: port to listen on, 0: any free one; `token`: access token, '': that of the environment, or a new one if one is needed; `script`: trial script, to count its trials, '': no count; `participant`: code of the person of its trials, '': as in the script |
 """
 
 from __future__ import annotations
