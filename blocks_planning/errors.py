@@ -3,14 +3,14 @@
 ::
 
     BlocksPlanningError
-    ├── InvalidInput            something given to us is wrong: exit code 2
-    │   ├── StimulusError       a silhouette, or the file it stands in
+    ├── InvalidInput            an input is wrong: exit code 2
+    │   ├── StimulusError       a silhouette, or the file that contains it
     │   ├── ConfigurationError  a planner, search or library setting
-    │   └── RecordError         a trial record, or the file it stands in
-    └── LimitExceeded           the question is legal but too large for a stated limit: exit code 3
+    │   └── RecordError         a trial record, or the file that contains it
+    └── LimitExceeded           the problem is valid but exceeds a stated limit: exit code 3
 
-Every message is one sentence on one line that names the value, says where it came from and
-what would be right. Anything else that is raised is a defect.
+Every message is one sentence on one line that names the value and its source, and says what is
+expected. Any other exception is a defect.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ class RecordError(InvalidInput):
 
 
 class LimitExceeded(BlocksPlanningError):
-    """A computation that would outgrow its stated limit; nothing was computed."""
+    """A computation that would exceed its stated limit; it has no result."""
 
 
 def shown(value: object, most: int = 60) -> str:
-    """A value as an error message shows it: on one line, and cut after so many characters."""
+    """A value as an error message shows it: on one line, and cut to ``most`` characters."""
     try:
         text = repr(value)
-    except (ValueError, RecursionError):  # thousands of digits, or of levels
-        return 'something too long to be shown'
+    except (ValueError, RecursionError):  # thousands of digits or nested levels
+        return 'a value that is too long to show'
     return text if len(text) <= most else f'{text[: most - 3]}...'

@@ -1,7 +1,7 @@
-"""Optional dependencies: an import that fails names the extra of the package that would help.
+"""Optional dependencies: an error of a failed import names the extra to install.
 
-The planning core and the nodes need few packages. What only experiments, figures, the page
-or the robot need is an extra of ``setup.py``, and is imported inside :func:`extra`.
+The planning core and the nodes need few packages. Packages that only experiments, figures, the page
+or the robot need are extras of ``setup.py``, and are imported inside :func:`extra`.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from contextlib import contextmanager
 from blocks_planning.errors import ConfigurationError
 
 EXTRAS = ('experiments', 'figures', 'page', 'robot')
-"""As in ``extras_require`` of ``setup.py``; the extra ``all`` is these without
-``robot``, which is heavy and only simulates a body."""
+"""As in ``extras_require`` of ``setup.py``; the extra ``all`` contains these except
+``robot``, which is large and only needed for the simulated robot."""
 
 
 class MissingExtra(ConfigurationError):

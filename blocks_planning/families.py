@@ -5,8 +5,8 @@ A plug-in is a class that another distribution names in an entry point of the fa
     [project.entry-points.'blocks_planning.searches']
     greedy = 'my_package.greedy:Greedy'
 
-Entry points are read when a name is asked for that this package does not have, or when all names
-are listed. A plug-in that cannot be loaded is named in errors and does no other harm.
+Entry points are read when a requested name is not in this package, or when all names
+are listed. A plug-in that cannot be loaded is named in errors and has no other effect.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""YAML whose every value knows its line, so that an error can say where it is."""
+"""YAML in which every value knows its line, so that errors can name the place."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from blocks_planning.errors import ConfigurationError, InvalidInput, shown
 T = TypeVar('T')
 MAX_FILE_BYTES = 1 << 20
 MAX_VALUES = 100_000
-"""A few lines of aliases of aliases would stand for more than any memory holds."""
+"""Nested aliases in a few lines could expand to more values than fit into memory."""
 
 
 @dataclass(frozen=True)
 class Located:
-    """A value of a YAML file, with the place where it stands.
+    """A value of a YAML file, with its place in the file.
 
     ``content`` is a plain value, a list of :class:`Located`, or a dict of them by key.
     """
@@ -35,17 +35,17 @@ class Located:
         """The entries of a mapping with just these keys.
 
         Raises:
-            ConfigurationError: if it is no mapping, lacks a key or has another one.
+            ConfigurationError: if it is not a mapping, a key is missing, or a key is unknown.
         """
         entries = self.mapping()
         for key in entries:
             if key not in (*required, *optional):
                 raise entries[key].fail(
-                    f'is not a key here; there are {", ".join((*required, *optional))}'
+                    f'unknown key; expected one of {", ".join((*required, *optional))}'
                 )
         for key in required:
             if key not in entries:
-                raise self.fail(f'lacks the key {key!r}')
+                raise self.fail(f'missing key {key!r}')
         return entries
 
     def mapping(self) -> dict[str, Located]:
@@ -77,7 +77,7 @@ class Located:
         return self.content
 
     def check(self, function: Callable[[], T]) -> T:
-        """Call a function, and put the place before what it complains about."""
+        """Call a function; put the place before the message of an error that it raises."""
         try:
             return function()
         except InvalidInput as error:
@@ -89,8 +89,8 @@ def read_yaml(path: Path) -> Located:
 
     Raises:
         ConfigurationError: if it can't be read, is not YAML, repeats a key, is larger than
-            ``MAX_FILE_BYTES`` or stands for more than ``MAX_VALUES`` values; it names file and
-            line.
+            ``MAX_FILE_BYTES`` or expands to more than ``MAX_VALUES`` values; the message names
+            file and line.
     """
     try:
         with path.open('rb') as file:
@@ -122,7 +122,7 @@ class _Reader:
         self._left = MAX_VALUES
 
     def locate(self, node: yaml.Node, key: str) -> Located:
-        """The value of a node, which stands behind a key, or behind none."""
+        """The value of a node; ``key`` is '' if it does not belong to a key."""
         place = self._place(node, key)
         self._left -= 1
         if self._left < 0:
@@ -135,9 +135,9 @@ class _Reader:
             return Located(yaml.SafeLoader('').construct_object(node), place)
         except RecursionError:
             raise
-        except Exception:  # noqa: BLE001  such as !!bool maybe, which it does not expect itself
+        except Exception:  # noqa: BLE001  such as !!bool maybe, for which PyYAML raises other errors
             raise ConfigurationError(
-                f'{place}: {shown(node.value)} is no value that can be read'
+                f'{place}: {shown(node.value)} is not a value that can be read'
             ) from None
 
     def _place(self, node: yaml.Node, key: str) -> str:
@@ -151,7 +151,7 @@ class _Reader:
                 raise ConfigurationError(f'{self._place(name, "")}: a key must be a word')
             key = str(name.value)
             if key in seen:
-                raise ConfigurationError(f'{self._place(name, key)}: is there twice')
+                raise ConfigurationError(f'{self._place(name, key)}: appears twice')
             seen.add(key)
             located = self.locate(value, key)
             yield key, Located(located.content, self._place(name, key))

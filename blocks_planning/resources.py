@@ -1,4 +1,4 @@
-"""Where the files that ship with the package are: in the checkout, or under ``share/``."""
+"""Location of the files that ship with the package: in the checkout, or under ``share/``."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
 _PREFIX_LEVELS = 4
-"""A package lies in ``PREFIX``, ``PREFIX/Lib/site-packages`` or ``PREFIX/lib/pythonX.Y/site-packages``."""
+"""Levels to search upwards: a package is in ``PREFIX``, in ``PREFIX/Lib/site-packages`` or in
+``PREFIX/lib/pythonX.Y/site-packages``."""
 
 
 def resource_directories(kind: str) -> Iterator[Path]:
-    """The existing directories of one kind ('stimuli', 'config'), the most specific first.
+    """The existing directories of one kind ('stimuli', 'config'), in order of precedence.
 
     A checkout (also one that is installed in editable mode) comes before the prefixes of
     ``AMENT_PREFIX_PATH`` (a ROS workspace), that before the folder that this package was installed

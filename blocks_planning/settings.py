@@ -1,4 +1,4 @@
-"""Settings as data: each one is described once, and everything else is made from that.
+"""Settings as data: each setting is described once, and everything else is derived from that.
 
 A *family* is a group of classes of which a trial names one: searches, strategies, region families,
 worlds. Each class is a frozen dataclass derived from :class:`Configured`; its fields are its
@@ -27,7 +27,7 @@ from typing import Any, ClassVar, Protocol, TypeAlias
 from blocks_planning.errors import ConfigurationError, shown
 
 Value: TypeAlias = bool | int | float | str
-"""What a setting holds outside Python: JSON's own types, and those of a ROS message."""
+"""Types of values outside Python: those of JSON and of ROS messages."""
 
 
 class Family(Protocol):
@@ -55,15 +55,15 @@ class Setting:
     Attributes:
         kind: ``bool``, ``int``, ``float`` or ``str``.
         text: one line of help.
-        name: outside Python; '' until the field is known.
-        default: its value if nothing is given.
+        name: its name outside Python; '' until the field is known.
+        default: value if none is given.
         unit: of the value; '' if it has none.
         least: smallest value allowed; None: no bound.
         most: largest value allowed; None: no bound.
         above: every value is above this number; None: no such bound.
         choices: the words allowed; empty: any.
         pattern: regular expression that a word must match; '': any.
-        expected: what the pattern asks for, in words.
+        expected: the pattern in words.
         family: registry of the family whose member this setting is; None for a plain value.
     """
 
@@ -157,7 +157,7 @@ def setting(
     Args:
         default: its type is the setting's type.
         text: one line of help.
-        name: outside Python, where it differs from the field's.
+        name: name outside Python, if it differs from the name of the field.
         unit: of the value.
         least: smallest value.
         most: largest value.

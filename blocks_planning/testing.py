@@ -1,7 +1,7 @@
-"""Checks that every member of a family must pass, for authors of plug-ins and for our own tests.
+"""Checks that every member of a family must pass, for the authors of plug-ins and our own tests.
 
 Each function takes a class, tries it on small random towers, and raises :class:`CheckFailed` with a
-sentence about the first rule that it breaks::
+sentence about the first violated rule::
 
     from blocks_planning.testing import check_search
     check_search(MySearch)
@@ -36,12 +36,12 @@ from blocks_planning.worlds.observation import Observation, mask_of
 from blocks_planning.worlds.world import ImpossibleOrder
 
 TOWERS = 12
-"""Number of random towers that a check tries, unless told otherwise."""
+"""Default number of random towers in a check."""
 _BUDGET = 200
 
 
 class CheckFailed(AssertionError):
-    """A member of a family breaks a rule that others rely on."""
+    """A member of a family violates a rule that other code relies on."""
 
 
 def check_search(cls: type[Any], towers: int = TOWERS, seed: int = 0) -> None:
@@ -63,7 +63,7 @@ def check_search(cls: type[Any], towers: int = TOWERS, seed: int = 0) -> None:
     large = Problem(*_large())
     ended = solve(large, search, 0, 1 << 40, used)
     ends_early = (SolveStatus.CANCELLED, SolveStatus.SOLVED, SolveStatus.UNSOLVABLE_PROVEN)
-    _require(ended.status in ends_early, cls, 'goes on after it was cancelled')
+    _require(ended.status in ends_early, cls, 'continues after it was cancelled')
 
 
 def _check_result(cls: type[Any], problem: Problem, found: SolveResult) -> None:
@@ -73,11 +73,23 @@ def _check_result(cls: type[Any], problem: Problem, found: SolveResult) -> None:
         _require(landed == placed, cls, f'plans {placed}, which does not come to rest there')
         built |= rules.cells_of(problem.task.board, placed)
         _require(not built & ~problem.region, cls, f'plans {placed}, outside the region')
-    _require(found.solved == (built == problem.region), cls, 'does not fill what it says it does')
-    _require(found.solved or not found.placements, cls, 'has a plan although it is not solved')
+    _require(
+        found.solved == (built == problem.region),
+        cls,
+        'has a status that contradicts its placements',
+    )
+    _require(
+        found.solved or not found.placements,
+        cls,
+        'has placements although the problem is not solved',
+    )
     costs = (found.solution_cost, found.planning_cost, found.attempts)
     _require(min(costs) >= 0, cls, 'has a negative cost')
-    _require(found.solution_cost <= found.planning_cost, cls, 'costs more than all attempts')
+    _require(
+        found.solution_cost <= found.planning_cost,
+        cls,
+        'has a solution cost above the planning cost',
+    )
 
 
 def check_regions(cls: type[Any], towers: int = TOWERS, seed: int = 0) -> None:
@@ -108,7 +120,7 @@ def check_strategy(cls: type[Any], towers: int = TOWERS, seed: int = 0) -> None:
     """Check a subgoal planner.
 
     Whole trials must give the same record with and without messages, and again when repeated;
-    the record must be read back equal, and verification must find nothing.
+    the record must not change when it is written and read, and verification must find nothing.
     """
     strategy = _made(cls)
     chance = random.Random(seed)
@@ -125,16 +137,16 @@ def _check_trial(cls: type[Any], spec: TrialSpec) -> None:
     if not spec.strategy.asks_person:
         _require(record == follow(spec, {}), cls, 'depends on how its queries are answered')
     again = record_from_json(json.loads(record.to_line()), 'check')
-    _require(again == record, cls, 'has a record that is not read back equal')
+    _require(again == record, cls, 'has a record that changes when it is written and read')
     for sentence in contradictions(record):
-        raise CheckFailed(f'{cls.name}: verification of a trial says: {sentence}')
+        raise CheckFailed(f'{cls.name}: verification reports: {sentence}')
 
 
 def check_world(cls: type[Any], towers: int = TOWERS, seed: int = 0) -> None:
     """Check a world.
 
     An outcome must be a pure function of (board, order, seed, sequence), be accepted by the world
-    itself, and be possible; a block that hangs in the air must not be accepted.
+    itself, and be possible; an unsupported block must not be accepted.
     """
     world = _made(cls)
     chance = random.Random(seed)
@@ -144,7 +156,7 @@ def check_world(cls: type[Any], towers: int = TOWERS, seed: int = 0) -> None:
             _check_outcomes(cls, world, task, number)
             spec = TrialSpec('check', task, NoSubgoals(), BreadthFirst(1), number, _BUDGET, world)
             for sentence in contradictions(run_trial(spec)):
-                raise CheckFailed(f'{cls.name}: verification of a trial says: {sentence}')
+                raise CheckFailed(f'{cls.name}: verification reports: {sentence}')
         hanging = Placed(1, 1, 0, task.board.height - 1)
         seen = Observation(Placement(Block(1, 1), 0), (hanging,))
         complaint = world.complaint(task, (), 0, seen, number, 1)
@@ -166,13 +178,13 @@ def _check_outcomes(cls: type[Any], world: Any, task: Task, seed: int) -> None:
         again = world.carry_out(task, 0, placed.placement, seed, 1)
         _require(seen == again, cls, 'is not repeatable')
         complaint = world.complaint(task, (), 0, seen, seed, 1)
-        _require(not complaint, cls, f'refuses its own outcome: {complaint}')
-        _require(seen.ordered == placed.placement, cls, 'does not say what was ordered')
+        _require(not complaint, cls, f'rejects its own outcome: {complaint}')
+        _require(seen.ordered == placed.placement, cls, 'has an observation without its order')
 
 
 def _made(cls: type[Any]) -> Any:
     """The class with default settings; checks that each setting refuses what it must."""
-    _require(bool(cls.__doc__), cls, 'has no docstring, which help and errors show')
+    _require(bool(cls.__doc__), cls, 'has no docstring; help and errors need it')
     made = cls()
     for attribute, known in described(cls):
         _require(bool(known.text), cls, f'setting {known.name} has no line of help')
@@ -217,7 +229,7 @@ def _large() -> tuple[Task, Mask, Mask]:
 
 
 def _states(chance: random.Random, task: Task, most: int = 4) -> Iterator[Mask]:
-    """States on a random way of legal placements, the first one empty."""
+    """States along a random sequence of legal placements, starting with the empty board."""
     built = 0
     yield built
     for _ in range(chance.randint(1, most)):

@@ -25,7 +25,7 @@ ARGUMENTS = {
     'script': ('', 'trial script to run; empty: wait for goals on run_trial'),
     'participant': ('', 'code of the person who plans; empty: as in the script'),
     'out_dir': ('trials', 'folder of trials.jsonl'),
-    'bag_dir': ('', 'folder of a bag to record everything in; empty: no bag'),
+    'bag_dir': ('', 'folder in which to record all topics as a bag; empty: no bag'),
     'namespace': ('', 'namespace of all nodes'),
     'peer_timeout_s': ('30.0', 'how long a node may be missing before its trial ends [s]'),
     'markers': ('false', 'true: publish the towers for RViz and Foxglove'),

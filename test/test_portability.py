@@ -204,7 +204,7 @@ records.close()
 run('verify', 'more/trials.jsonl')
 """
     done = run_elsewhere(code, tmp_path)
-    assert done.stdout.count('all hold') == 2, done.stderr
+    assert done.stdout.count('all consistent') == 2, done.stderr
     assert (tmp_path / 'tower.png').read_bytes().startswith(b'\x89PNG')
 
 
@@ -217,5 +217,5 @@ main()
 """
     done = run_elsewhere(code, tmp_path)
     assert done.returncode == 2
-    assert done.stderr.startswith('Error: ROS 2 is not installed here: ')
+    assert done.stderr.startswith('Error: ROS 2 is not installed in this Python environment: ')
     assert done.stderr.count('\n') == 1

@@ -149,8 +149,8 @@ class Credulous(Simulated):
     ('check', 'cls', 'sentence'),
     [
         (testing.check_search, Forgetful, 'is not repeatable'),
-        (testing.check_search, Boastful, 'does not fill what it says'),
-        (testing.check_search, Deaf, 'goes on after it was cancelled'),
+        (testing.check_search, Boastful, 'has a status that contradicts'),
+        (testing.check_search, Deaf, 'continues after it was cancelled'),
         (testing.check_search, Careless, 'setting width has no line of help'),
         (testing.check_regions, Repeating, 'lists a target twice'),
         (testing.check_regions, Whole, 'adds no cell'),

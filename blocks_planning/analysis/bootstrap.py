@@ -1,8 +1,8 @@
-"""Bootstrap as in the paper (section "Results"): one run drawn per silhouette, again and again.
+"""Bootstrap as in the paper (section "Results"): each iteration draws one run per silhouette.
 
 Runs are given in groups: one for each resampling unit (a silhouette). An iteration draws one
 value from every group, uniformly, and takes the mean over groups. Groups without a value (no
-successful run, where only those count) take no part. The estimate of a mean is that of the
+successful run, if only those count) are excluded. The estimate of a mean is that of the
 bootstrap distribution itself, the mean over groups of the group means; intervals are percentiles.
 """
 

@@ -1,4 +1,4 @@
-"""Every claim of the paper beside our number, with the verdicts and why they differ."""
+"""Comparison of every claim of the paper with our number: verdicts and reasons of differences."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ def compare(presets: Mapping[str, Any], trials: pd.DataFrame) -> dict[str, list[
 
     Args:
         presets: the results of each preset; see :func:`.results.summarise`.
-        trials: the table that they come from.
+        trials: the table from which they were computed.
 
     Returns:
-        A list for each preset. A claim whose number the results lack (a quick run leaves some
-        out) is left out.
+        A list for each preset. A claim without a number in the results (a quick run omits some)
+        is omitted.
     """
     return {preset: _compare(preset, presets, trials) for preset in presets}
 
@@ -85,7 +85,7 @@ def _why(claim: Claim, preset: str, presets: Mapping[str, Any], trials: pd.DataF
     """A measured reason, or that none is known and what was tried."""
     ours = find(presets[preset], claim.path)
     if ours['mean'] is None:
-        return 'Ours is the same at every lambda, so that r is undefined.'
+        return 'Ours is the same at every lambda, so r is undefined.'
     tried = []
     for counting in COUNTINGS:
         if not counting.applies(claim):

@@ -1,8 +1,8 @@
-"""Why one of our numbers differs from the paper's, as far as it can be measured on our own trials.
+"""Reasons why a number differs from the paper's, as far as our own trials can show them.
 
-Each way of counting that the published analysis has and the text does not tell is tried on our trials.
-One that makes our number agree is a reason that was measured. The seed of each draw is fixed, so
-that the reasons are the same every time.
+Each way of counting of the published analysis that the text does not mention is tried on our
+trials. If it makes our number agree, it is a measured reason. The seed of each draw is fixed, so
+the reasons are reproducible.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ class Counting:
     """Another way of counting.
 
     Attributes:
-        words: what is done, as the end of "counted as ...".
-        applies: whether it means anything for a claim.
-        measure: our number, counted so; undefined (nan) where it can't be.
+        words: description, to follow "counted with".
+        applies: whether it is applicable to a claim.
+        measure: our number, counted in this way; nan if undefined.
     """
 
     words: str

@@ -1,4 +1,4 @@
-"""The figure of a fit: how well each model does, and its parameters, session by session."""
+"""The figure of a fit: BIC of each model, and parameters, session by session."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers as the report writes them."""
+"""Formats of the numbers in the report."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _SMALLEST_P = 0.001
 
 
 def format_number(value: float | None) -> str:
-    """A number for people: three or four digits, thousands separated, '–' for none."""
+    """A readable number: three or four digits, thousands separated, '–' for none."""
     if value is None:
         return '–'
     if abs(value) >= 1e6:
@@ -31,7 +31,7 @@ def format_interval(estimate: Mapping[str, Any]) -> str:
 
 
 def with_interval(estimate: Mapping[str, Any]) -> str:
-    """Value and interval, whichever there are."""
+    """Value and interval, as far as they exist."""
     value = estimate['mean']
     words = ['' if value is None else format_number(value), format_interval(estimate)]
     return ' '.join(filter(None, words)) or format_number(None)

@@ -1,4 +1,4 @@
-"""The paper's numbers as marks in figures: filled where printed, hollow where only in the analysis."""
+"""The paper's numbers as marks in figures: filled if printed, hollow if only in the analysis."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LABELS = {
 
 
 class Mark(NamedTuple):
-    """A number of the paper, and where it stands."""
+    """A number of the paper, and its source."""
 
     value: float
     kind: Kind
@@ -28,7 +28,7 @@ def _by_path() -> dict[str, Claim]:
 
 
 def mark_of(*path: object) -> Mark | None:
-    """The paper's number at a place in the results; None where it has none."""
+    """The paper's number for a place in the results; None if there is none."""
     claim = _by_path().get(str(path))
     if claim is None:
         return None
@@ -37,7 +37,7 @@ def mark_of(*path: object) -> Mark | None:
 
 
 def style_of(kind: Kind, colour: str) -> dict[str, Any]:
-    """How a mark is drawn."""
+    """The style of a mark."""
     printed = kind is Kind.PRINTED
     return {
         'marker': SHAPE,

@@ -1,8 +1,8 @@
 """The standard error of our own means, which have many seeds where the paper draws one run.
 
 All planners of a seed share their solves, so runs of one seed depend on each other, over lambda and
-between planners. What is independent are seeds: the error is a jackknife that leaves out one seed
-after another, of all silhouettes at once.
+between planners. Only seeds are independent: the error is a jackknife that leaves out one seed
+after the other, for all silhouettes together.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """What Binder et al. (2021) report, number by number, as types; :mod:`.paper_file` reads them.
 
-A number is printed in the paper (kind P) or stands only in its published analysis (kind A). A claim
-is one quantity with a number of either kind or of both, and the place of ours in the results of
-:func:`.results.summarise`. Costs are in states evaluated.
+A number is printed in the paper (kind P) or appears only in its published analysis (kind A). A
+claim is one quantity with a number of either kind or of both, and the place of ours in the results
+of :func:`.results.summarise`. Costs are in states evaluated.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from enum import Enum
 from typing import Any
 
 TWO_SIDED = 4
-"""The paper's p is half the one-sided one: times this it is two-sided."""
+"""Factor from the paper's p (half of a one-sided p) to a two-sided p."""
 SIGNIFICANT = 0.05
 
 Interval = tuple[float, float]
 
 
 class Kind(str, Enum):
-    """Where a number of the paper stands."""
+    """The source of a number of the paper."""
 
     PRINTED = 'P'
     ANALYSIS = 'A'
@@ -30,8 +30,8 @@ class Reported:
     """A number of the paper.
 
     Attributes:
-        kind: where it stands.
-        source: the part of the paper, or how it is printed.
+        kind: its kind of source.
+        source: the part of the paper, or the printed words.
         value: the number; None where only an interval is of this kind.
         interval: 95 % confidence interval; None if the source gives none.
         p: as the paper computes it; None if the source gives none.
@@ -51,7 +51,9 @@ class Reported:
         if self.interval is not None:
             return self.interval
         if self.value is None:
-            raise ValueError('a number without value and interval')  # the reader refuses it
+            raise ValueError(
+                'a number without value and interval'
+            )  # the reader of the file refuses this
         return (self.value, self.value)
 
     def to_json(self) -> dict[str, Any]:
@@ -71,9 +73,9 @@ class Claim:
 
     Attributes:
         id: short and stable.
-        statement: what it is, in words.
+        statement: description of the quantity.
         path: its place in the results: keys, and settings that select from a list.
-        is_effect: whether it has a sign to be told from 0 (a difference, a correlation).
+        is_effect: whether it can be compared with 0 (a difference, a correlation).
         printed: the number of kind P.
         analysis: the number of kind A.
         contradiction: how the paper contradicts itself here; empty if it does not.
@@ -89,10 +91,10 @@ class Claim:
 
     @property
     def judged(self) -> Reported:
-        """The number that ours is held against: the printed one where there is one."""
+        """The number that ours is compared with: the printed one if there is one."""
         reported = self.printed or self.analysis
         if reported is None:
-            raise ValueError(f'{self.id}: has no number')  # the reader refuses it
+            raise ValueError(f'{self.id}: has no number')  # the reader of the file refuses this
         return reported
 
 

@@ -1,4 +1,4 @@
-"""Reading ``paper.yaml``, where every number of Binder et al. (2021) stands."""
+"""Reads ``paper.yaml``, which contains every number of Binder et al. (2021)."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def read_paper(path: Path) -> Paper:
     """Read a file like ``paper.yaml``.
 
     Raises:
-        ConfigurationError: naming file, line and key, for what is missing, unknown or no number, and
-            for an interval that is turned round or does not hold its value.
+        ConfigurationError: naming file, line and key, for a missing or unknown key, a value that is
+            not a number, or an interval that is reversed or does not contain its value.
     """
     top = read_yaml(path).entries(
         *('paper', 'kinds', 'design', 'table1', 'planners', 'differences', 'correlations'),
@@ -141,7 +141,7 @@ def _claim(
         if kind.value in entries
     }
     if not numbers:
-        raise entry.fail('lacks a number of kind P or A')
+        raise entry.fail('expected a number of kind P or A')
     return Claim(
         name,
         statement,
@@ -154,7 +154,7 @@ def _claim(
 
 
 _ROUNDED = 5e-6
-"""Relative difference that rounding to six digits makes."""
+"""Relative difference caused by rounding to six digits."""
 
 
 def _reported(entry: Located, kind: Kind, *, contradicted: bool = False) -> Reported:
@@ -162,11 +162,11 @@ def _reported(entry: Located, kind: Kind, *, contradicted: bool = False) -> Repo
     value = _number(entries['value']) if 'value' in entries else None
     interval = _interval(entries['interval']) if 'interval' in entries else None
     if value is None and interval is None:
-        raise entry.fail('lacks a value or an interval')
+        raise entry.fail('expected a value or an interval')
     if value is not None and interval is not None and not contradicted:
         slack = _ROUNDED * abs(value)
         if not interval[0] - slack <= value <= interval[1] + slack:
-            raise entry.fail(f'the interval {list(interval)} does not hold the value {value:g}')
+            raise entry.fail(f'the interval {list(interval)} does not contain the value {value:g}')
     p, below = _p_value(entries['p']) if 'p' in entries else (None, False)
     return Reported(kind, str(entries['source'].content), value, interval, p, below)
 

@@ -1,7 +1,7 @@
-"""People beside the planners: which silhouettes are hard, and how many blocks are used.
+"""Comparison of people and planners: difficulty of silhouettes, and number of blocks.
 
-People had physics, a limit of 60 s, and could place blocks outside the silhouette, so what can
-be compared is the order of difficulty, not how often they succeed.
+People built with simulated physics and a limit of 60 s, and could place blocks outside the
+silhouette. So the order of difficulty can be compared, but not the rates of success.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def read_people() -> pd.DataFrame:
     """The aggregates per silhouette; the columns are explained in the file. Index: stimulus.
 
     Raises:
-        InvalidInput: if the file is not there.
+        InvalidInput: if the file is not installed.
     """
     for directory in resource_directories('stimuli'):
         path = Path(directory, f'{SET}.people.csv')
@@ -52,7 +52,7 @@ def read_people() -> pd.DataFrame:
 
 
 def compare_people(trials: pd.DataFrame, preset: str, seed: int = SEED) -> dict[str, Any]:
-    """People against each planner of a preset, by silhouette.
+    """Compare people with each planner of a preset, by silhouette.
 
     Returns:
         ``perfect``: share of perfect attempts of all, ``ranking``: silhouettes from easy to hard

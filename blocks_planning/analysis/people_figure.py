@@ -1,4 +1,4 @@
-"""The figure of people beside the planners."""
+"""The figure that compares people with planners."""
 
 from __future__ import annotations
 

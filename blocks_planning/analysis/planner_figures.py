@@ -33,7 +33,7 @@ _UNITS = {
 }
 
 _LOWEST = {'action_planning_cost': -4, 'subgoal_planning_cost': -1}
-"""Lower ends of the axes, in their units: dots at 0 and what is written below them are whole."""
+"""Lower ends of the axes, in their units: dots at 0 and the labels below them are visible."""
 
 
 def figure_2(presets: dict[str, Results]) -> Figure:
@@ -79,7 +79,7 @@ def _paper_dot(ax: Any, search: str, strategy: str, cost: str) -> None:
     states = mark_of('planners', search, strategy, cost)
     if success is None:
         return
-    if states is None:  # none weighs no subgoals
+    if states is None:  # strategy none has no subgoal planning cost
         if strategy != 'none' or cost != 'subgoal_planning_cost':
             return
         value, kind = 0.0, success.kind
@@ -90,7 +90,7 @@ def _paper_dot(ax: Any, search: str, strategy: str, cost: str) -> None:
     ax.annotate(
         SEARCH_NAMES[search],
         (success.value, value),
-        xytext=(0, 6 if search == 'astar' else -6),  # so that neighbours are told apart
+        xytext=(0, 6 if search == 'astar' else -6),  # so that labels do not overlap
         textcoords='offset points',
         ha='center',
         va='bottom' if search == 'astar' else 'top',
@@ -159,7 +159,7 @@ def _curve(ax: Any, measure: str, search: str, results: Results) -> None:
 
 
 def _tell_r(ax: Any, measure: str, search: str, results: Results) -> None:
-    """Our r, and the paper's printed one."""
+    """Write our r, and the paper's printed one."""
     ours = results['lambda'][search]['correlation'][measure]['mean']
     paper = mark_of('lambda', search, 'correlation', measure)
     words = 'r undefined' if ours is None else f'r = {ours:.2f}'

@@ -1,4 +1,4 @@
-"""The report of a reproduction: ``report.html`` in one piece, ``results.json``, and figures."""
+"""The report of a reproduction: a self-contained ``report.html``, ``results.json``, and figures."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ with extra('figures'):
     from matplotlib.figure import Figure
 
 MAIN = PRESETS[0]
-"""The preset whose numbers stand at the top of ``results.json``."""
+"""The preset whose numbers are at the top of ``results.json``."""
 
 
 def write_report(
@@ -52,7 +52,7 @@ def write_report(
         notes: sentences for the head of the report.
 
     Returns:
-        What is in ``results.json``.
+        The content of ``results.json``.
 
     Raises:
         InvalidInput: if the sweep has no tables.
@@ -106,7 +106,7 @@ def _figures(
 
 
 def add_exact(table1: list[dict[str, Any]], exact: list[dict[str, Any]]) -> None:
-    """Put exact values beside the sampled ones of the same search, as ``exact``; else None."""
+    """Add the exact values of each search to the sampled ones, as ``exact``; None without any."""
     for row in table1:
         wanted = {key: row[key] for key in ('search', *SEARCH_SETTINGS) if key in row}
         found = [item for item in exact if wanted.items() <= item.items()]

@@ -1,4 +1,4 @@
-"""The tables of the report that are made of more than one part of the results."""
+"""The tables of the report that combine several parts of the results."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def _budget(row: dict[str, Any]) -> str:
 
 
 def switch_rows(trials: pd.DataFrame) -> list[dict[str, Any]]:
-    """Scoping with every combination of a search's settings and what is executed of a subgoal.
+    """Scoping with every combination of search settings and executed part of a subgoal.
 
     Means are over the values of lambda that all combinations have, so that one row differs from
     another by its settings alone.

@@ -1,8 +1,8 @@
-"""The numbers of a reproduction: what the paper reports, computed from a table of trials.
+"""The numbers of a reproduction, as the paper reports them, computed from a table of trials.
 
-Everything is drawn from one generator in a fixed order: same trials and seed, same numbers. An
-estimate is ``{"mean": ..., "ci": [low, high], "p": ..., "se": ...}``: mean, interval and p as the
-paper computes them, from one drawn run per silhouette, and the standard error of our own mean.
+All draws come from one generator in a fixed order: the same trials and seed give the same numbers.
+An estimate is ``{"mean": ..., "ci": [low, high], "p": ..., "se": ...}``: mean, interval and p as
+the paper computes them, from one drawn run per silhouette, and the standard error of our own mean.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def summarise(trials: pd.DataFrame, preset: str, seed: int = SEED) -> dict[str, 
 
 
 class _Statistics:
-    """What is computed of parts of the table."""
+    """Statistics of parts of the table."""
 
     def __init__(self, seeds: Sequence[int], rng: np.random.Generator) -> None:
         self._seeds = seeds

@@ -79,7 +79,7 @@ def _stripes(
 
 
 def _spread(names: pd.Series, count: int) -> list[str]:
-    """Evenly spaced ones of some names; each several times if there are fewer."""
+    """Evenly spaced elements of some names; repeated if there are too few."""
     places = np.linspace(0, len(names) - 1, count).round().astype(int)
     return [str(name) for name in names.to_numpy()[places]]
 

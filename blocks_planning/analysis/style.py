@@ -1,4 +1,4 @@
-"""How figures look: colours that a colour-blind reader can tell apart, sizes, and saving."""
+"""Style of figures: colours that colour-blind readers can distinguish, sizes, and saving."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ DPI = 150
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure of a size [inches], with the house style."""
+    """An empty figure of a size [inches], in the style of this package."""
     with mpl.rc_context(_SETTINGS):
         figure = Figure(figsize=(width, height), layout='constrained')
         FigureCanvasAgg(figure)
@@ -46,7 +46,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def styled() -> Any:
-    """A context in which axes are made in the house style."""
+    """A context in which axes have the style of this package."""
     return mpl.rc_context(_SETTINGS)
 
 
@@ -56,12 +56,12 @@ def save_figure(figure: Figure, folder: Path, name: str) -> Path:
     path = folder / f'{name}.svg'
     with styled():
         figure.savefig(path, metadata={'Date': None})
-        figure.set_layout_engine('none')  # it stays as it was laid out
+        figure.set_layout_engine('none')  # keep the layout
         figure.savefig(path.with_suffix('.png'), dpi=DPI)
     return path
 
 
 def error_bars(estimate: dict[str, Any]) -> tuple[float, list[list[float]]]:
-    """The mean of an estimate, and its interval as matplotlib wants it: distances below, above."""
+    """The mean of an estimate, and its interval as distances below and above, for matplotlib."""
     mean, (low, high) = estimate['mean'], estimate['ci']
     return mean, [[max(0.0, mean - low)], [max(0.0, high - mean)]]

@@ -1,4 +1,4 @@
-"""The trials of a sweep as a pandas table, and the parts of it that the paper speaks of."""
+"""The trials of a sweep as a pandas table, and the parts of it that the paper reports."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ with extra('experiments'):
     import pandas as pd
 
 PRESETS = tuple(the_paper().presets)
-"""The names of the presets: how the published numbers were made, and the text to the letter."""
+"""The names of the presets: the published numbers, and the text of the paper literally."""
 
 SEARCH_SETTINGS = ('depth', 'dead_ends', 'iterations', 'divisor', 'execute')
 SETTINGS = ('commit', *SEARCH_SETTINGS)
@@ -35,7 +35,7 @@ def read_trials(folder: Path) -> pd.DataFrame:
     """
     path = folder / 'trials.parquet'
     if not path.is_file():
-        raise InvalidInput(f'{path}: is not there; has the sweep been finished?')
+        raise InvalidInput(f'{path}: does not exist; has the sweep been finished?')
     trials = pd.read_parquet(path)
     for name in (*_WORDS, *_WORD_SETTINGS):
         trials[name] = trials[name].astype('category')
@@ -66,7 +66,7 @@ def single_attempts_of(trials: pd.DataFrame, preset: str) -> pd.DataFrame:
 
 
 def with_settings(trials: pd.DataFrame, settings: Mapping[str, str]) -> pd.DataFrame:
-    """The trials that have these settings; one that a search or strategy lacks does not matter."""
+    """The trials with these settings; those that a search or strategy does not have are ignored."""
     same = np.ones(len(trials), bool)
     for setting, value in settings.items():
         column = trials[setting]

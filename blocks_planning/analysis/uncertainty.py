@@ -1,9 +1,9 @@
-"""What uncertainty does to planners: success, regret and costs by world, and a comparison.
+"""Planners under uncertainty: success, regret and costs by world, and a comparison.
 
 Every number is a mean over towers of the means over seeds. Intervals (95 %) are percentiles of a
-bootstrap over towers: towers are drawn with replacement, each with all of its seeds, so that they
-say how far another set of towers may differ. Costs are over all trials, successful or not, and
-count every state that was evaluated, also for plans that were thrown away.
+bootstrap over towers: towers are drawn with replacement, each with all of its seeds, so they
+describe the variation between sets of towers. Costs are over all trials, successful or not, and
+count every evaluated state, including those of plans that were not executed to the end.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def _planner(row: dict[str, Any]) -> str:
 
 
 def summarise(trials: pd.DataFrame, optima: list[dict[str, Any]]) -> dict[str, Any]:
-    """All that the report says, as data.
+    """The content of the report, as data.
 
     Args:
         trials: of :func:`read_uncertain`.
@@ -106,7 +106,7 @@ def _cells(means: pd.DataFrame, best: pd.DataFrame) -> Any:
 
 
 def advantages(means: pd.DataFrame) -> list[dict[str, Any]]:
-    """What looking one subgoal ahead gains over planning all subgoals, by planner and slip.
+    """The advantage of looking one subgoal ahead over planning all subgoals, by planner and slip.
 
     For each scoping planner: the difference in success, the ratio of states evaluated (full
     planning divided by scoping), and how much both have changed since slip 0, paired by tower.
@@ -138,9 +138,10 @@ def _gains(glued: pd.DataFrame, planner: str, slip: float) -> dict[str, np.ndarr
 
 
 def loose_towers(trials: pd.DataFrame) -> list[dict[str, Any]]:
-    """How often each planner succeeds glued and loose, and falls, on the towers that people built.
+    """Success with glued and loose blocks, and falls, of each planner on the towers of people.
 
-    ``people`` is the share of people's attempts that were perfect; they had physics.
+    ``people`` is the share of people's attempts that were perfect; they built with simulated
+    physics.
     """
     people = read_people()
     known = trials[trials['stimulus'].isin(people.index)]

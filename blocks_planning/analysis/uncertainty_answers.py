@@ -1,7 +1,7 @@
-"""The answer in words: does looking one subgoal ahead gain more where the world is uncertain?
+"""The conclusions in words: does the advantage of looking one subgoal ahead grow with uncertainty?
 
-The sentences are made of the intervals of :mod:`.uncertainty`, so that they follow the numbers of
-every run, whatever those are.
+The sentences are generated from the intervals of :mod:`.uncertainty`, so they follow the numbers of
+every run.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def answers(results: dict[str, Any]) -> list[str]:
 def first_change(rows: list[dict[str, Any]], thing: str) -> tuple[float, int] | None:
     """The lowest slip from which on an advantage differs from slip 0, and the sign of the change.
 
-    From there on the interval of the change leaves out 0, on the same side, at every higher slip.
+    At this slip and every higher one the interval of the change excludes 0, on the same side.
     None if there is no such slip.
     """
     found = None

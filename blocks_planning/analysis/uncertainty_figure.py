@@ -69,7 +69,7 @@ def _panel(panel: Axes, results: dict[str, Any], measure: str) -> None:
 
 
 def loose_figure(results: dict[str, Any]) -> Figure:
-    """How often the towers of each planner fall, by tower, beside people's perfect attempts."""
+    """Shares of falling towers of each planner, by tower, and of imperfect attempts of people."""
     figure = new_figure(9, 3.4)
     rows = results['loose']
     towers = list(dict.fromkeys(row['stimulus'] for row in rows))

@@ -1,4 +1,4 @@
-"""The report of the experiment in uncertain worlds: a page in one piece, results and figures."""
+"""The report of the experiment in uncertain worlds: a self-contained page, results and figures."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def write_uncertainty(
         notes: sentences for the head of the report.
 
     Returns:
-        What is in ``results.json``.
+        The content of ``results.json``.
 
     Raises:
         InvalidInput: if the sweep has no tables.

@@ -1,10 +1,10 @@
-"""Holding our numbers against the paper's: two answers for each, like with like.
+"""Comparison of our numbers with the paper's: two verdicts for each.
 
 Both intervals are of the same kind: 1000 iterations, each drawing one run per silhouette.
 
 *effect* (differences and correlations only): ``same`` if ours has the sign of the paper's, and both
-or neither can be told from 0, that is if both or neither interval leaves out 0; else ``differs``. An
-effect that the paper cannot tell from 0 and we can differs. A level has no such answer.
+or neither are significant, that is if both or neither interval excludes 0; else ``differs``. An
+effect that is significant here but not in the paper differs. A level has no such verdict.
 
 *size*: ``overlap`` if the intervals share a value; else ``differs``, with the ratio of ours to the
 paper's. A number that the paper gives without an interval counts as an interval of no width.
@@ -25,7 +25,7 @@ DIFFERS = 'differs'
 
 @dataclass(frozen=True)
 class Verdict:
-    """The two answers.
+    """The two verdicts.
 
     Attributes:
         effect: SAME or DIFFERS; None for a level.
@@ -48,9 +48,9 @@ class Verdict:
 
 
 def judge(is_effect: bool, paper: Reported, ours: Mapping[str, Any]) -> Verdict:
-    """Hold ours, ``{"mean": ..., "ci": [low, high], ...}``, against a number of the paper.
+    """Compare ours, ``{"mean": ..., "ci": [low, high], ...}``, with a number of the paper.
 
-    Where ours is undefined (mean None) both answers are that it differs.
+    If ours is undefined (mean None), both verdicts are that it differs.
     """
     if ours['mean'] is None:
         return Verdict(DIFFERS if is_effect else None, DIFFERS, None)
@@ -68,7 +68,7 @@ def judge(is_effect: bool, paper: Reported, ours: Mapping[str, Any]) -> Verdict:
 
 
 def leaves_out_0(bounds: Interval) -> bool:
-    """Whether 0 lies outside an interval, its ends included: whether an effect can be told from 0."""
+    """Whether an interval, including its ends, excludes 0: whether an effect is significant."""
     return bounds[0] > 0 or bounds[1] < 0
 
 

@@ -1,1 +1,1 @@
-"""What a tower is: cells, blocks, the rules of dropping them, and silhouettes on disk."""
+"""Towers: cells, blocks, the rules of placement, and silhouette files."""

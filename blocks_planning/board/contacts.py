@@ -1,4 +1,4 @@
-"""Where blocks touch, and what follows from that without a linear program.
+"""Contacts of blocks, and tests of stability without a linear program.
 
 Blocks touch where one lies on another or on the ground, over an interval of columns. Sides do not
 count. See :mod:`.statics` for the forces there.
@@ -36,7 +36,7 @@ class Structure(NamedTuple):
 
 
 def structure_of(blocks: Iterable[Placed]) -> Structure:
-    """Find the contacts of blocks that do not overlap."""
+    """The contacts of blocks that do not overlap."""
     ordered = tuple(sorted(blocks, key=lambda block: (-block.row, block.column)))
     below = tuple(
         tuple(_contacts_below(ordered, number, block)) for number, block in enumerate(ordered)
@@ -63,7 +63,8 @@ def is_carried(structure: Structure, margin: Number) -> bool:
 
     Args:
         structure: the blocks.
-        margin: how far ends of contacts are moved inwards [cells]; calculation is in its type.
+        margin: how far ends of contacts are moved inwards [cells]; its type is that of the
+            computation.
     """
     number = type(margin)
     loads: list[list[tuple[Number, Number]]] = [[] for _ in structure.blocks]
@@ -85,7 +86,7 @@ def is_carried(structure: Structure, margin: Number) -> bool:
 def _shares(
     contacts: tuple[Contact, ...], place: Number, weight: Number, margin: Number
 ) -> list[tuple[Contact, Number, Number]]:
-    """How contacts bear a weight: contact, place and load of each; none if they can't."""
+    """How contacts carry a weight: contact, position and load of each; none if they can't."""
     for contact in contacts:
         if contact.left + margin <= place <= contact.right - margin:
             return [(contact, place, weight)]
@@ -101,11 +102,11 @@ def _shares(
 
 
 def must_tip(structure: Structure, margin: Fraction) -> bool:
-    """Whether some block, with all that stands on it, has its weight beyond its support.
+    """Whether the weight of some block, with everything on it, lies beyond its support.
 
-    It is looked at where what stands on the block stands on nothing else. Then all outer forces
-    but weights act at one height, so that friction has no moment, and the centre of the weights
-    must be between the outermost ends of the contacts.
+    Only blocks whose load rests on nothing else are tested. For them, all outer forces except
+    weights act at one height, so friction has no moment, and the centre of mass must be between the
+    outermost ends of the contacts.
 
     Args:
         structure: the blocks.
@@ -138,7 +139,7 @@ def must_tip(structure: Structure, margin: Fraction) -> bool:
 
 
 def _above(structure: Structure) -> list[set[int]]:
-    """For every block, itself and all blocks that rest on it, straight or through others."""
+    """For every block, itself and all blocks that rest on it, directly or indirectly."""
     above = [{index} for index in range(len(structure.blocks))]
     for index, contacts in enumerate(structure.below):  # from the highest row down
         for contact in contacts:

@@ -1,4 +1,4 @@
-"""The coordinate convention, drawn once. Everything else asks this module.
+"""The coordinate convention, with a drawing. All other code uses this module.
 
 Column 0 is left, row 0 is the ground, rows count upwards. A set of cells is a *mask*: an ``int``
 in which cell (column, row) is bit ``column * height + row``, so the bits run up a column, then on
@@ -109,7 +109,7 @@ class Board:
         return max((row + 1 for _, row in self.cells(mask)), default=0)
 
     def parse(self, rows: Sequence[str]) -> Mask:
-        """The mask of a picture that :meth:`draw` made, top row first; the text is trusted."""
+        """The mask of a picture from :meth:`draw`, top row first; the text is not checked."""
         return self.mask(
             (column, self.height - 1 - line)
             for line, text in enumerate(rows)

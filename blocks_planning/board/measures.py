@@ -1,7 +1,7 @@
-"""What a silhouette looks like, in numbers.
+"""Measures of the shape of a silhouette.
 
-Holes and overhangs are what makes a tower hard to plan: a block over them has to be placed before
-anything can lie on it, and what lies under it can't be filled any more.
+Holes and overhangs make a tower hard to plan: a block over them must be placed before anything can
+rest on it, and the cells under it can't be filled any more.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ class Shape(NamedTuple):
         cells: number of target cells.
         width: columns from the first to the last that has a target cell [cells].
         height: rows from the ground to the highest target cell [cells].
-        holes: number of connected groups of empty cells that are shut in by target cells, the
-            ground and the sides of the board being walls; cells connect by their edges.
+        holes: number of connected groups of empty cells that are enclosed by target cells, with the
+            ground and the sides of the board as walls; cells are connected by their edges.
         hole_cells: number of empty cells in holes.
-        overhangs: number of stretches of target cells in a row, side by side, each with an empty
-            cell right below.
+        overhangs: number of horizontal runs of target cells, each with an empty cell directly
+            below.
         covered_cells: number of empty cells somewhere below a target cell.
         roughness: sum of the steps between the tops of neighbouring columns [cells].
     """

@@ -23,7 +23,7 @@ def normalised(name: str) -> str:
 
 
 def name_fault(name: str) -> tuple[int, str] | None:
-    """Why a text is no name.
+    """Why a text is not a valid name.
 
     Returns:
         (index of the first character that is wrong, the reason in one line), or None if the text
@@ -34,7 +34,7 @@ def name_fault(name: str) -> tuple[int, str] | None:
     for index, character in enumerate(name):
         if not _may_stand(character):
             instead = suggested(name)
-            hint = f'; {shown(instead)} would do' if instead else ''
+            hint = f'; try {shown(instead)}' if instead else ''
             return index, f'{_RULE}, got {shown(name)}{hint}'
     if len(name) > MAX_NAME:
         return MAX_NAME, f'{_RULE}, {MAX_NAME} characters at most, got {len(name)}'
@@ -42,7 +42,7 @@ def name_fault(name: str) -> tuple[int, str] | None:
 
 
 def suggested(text: str) -> str:
-    """The name nearest to a text: '-' stands for what a name may not contain; '' if none does."""
+    """The name nearest to a text: '-' replaces invalid characters; '' if there is none."""
     kept = ''.join(sign if _may_stand(sign) else ' ' for sign in normalised(text))
     return '-'.join(kept.split())[:MAX_NAME]
 

@@ -1,4 +1,4 @@
-"""Silhouettes as text pictures: the form in which they are kept in files and records.
+"""Silhouettes as text pictures: their form in files and records.
 
 A file holds one or more pictures, top row first, '#' for a target cell and '.' for an empty one::
 
@@ -8,9 +8,9 @@ A file holds one or more pictures, top row first, '#' for a target cell and '.' 
     .#.###..
 
 A line ``tower NAME`` names the picture below it (:mod:`.names`); otherwise pictures are numbered
-from 1. Pictures are kept apart by blank lines or headings. CRLF, trailing blanks, a byte order
-mark and comments behind a row are fine. A picture that is wider or taller than a board loses its
-empty margins in that direction.
+from 1. Pictures are separated by blank lines or headings. CRLF, trailing blanks, a byte order
+mark and comments after a row are accepted. If a picture is wider or taller than a board, its
+empty margins in that direction are removed.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ MAX_FILE_BYTES = 1 << 20
 
 _HEADING = re.compile(r'tower(?:[ \t]+(.*))?', re.DOTALL)
 # A comment needs a character that no row has, so that a row drawn with blanks is an error and
-# not a lost row.
+# not silently ignored.
 _COMMENT = re.compile(r'(?:^|[ \t])#[ \t]')
 _WORDS = re.compile(r'[^#. \t]')
 
@@ -78,7 +78,7 @@ def format_silhouette(
         name: of the tower (:mod:`.names`).
         board: its size.
         silhouette: its target cells.
-        comments: lines of words that stand above the picture.
+        comments: lines of words above the picture.
     """
     lines = [f'# {comment}' for comment in comments]
     return '\n'.join([*lines, f'tower {name}', board.draw(silhouette), ''])
@@ -104,7 +104,7 @@ def _split(text: str, origin: str) -> Iterator[_Picture]:
 
 
 def _name_in(heading: re.Match[str], place: str) -> str:
-    """The name that stands in a heading."""
+    """The name in a heading."""
     name = heading[1] or ''
     fault = name_fault(name)
     if fault is not None:
@@ -123,8 +123,8 @@ def _refuse_bare(heading: tuple[int, str] | None, origin: str) -> None:
 def _without_comments(text: str, origin: str) -> Iterator[tuple[int, str]]:
     """Line numbers from 1 and lines without comments and trailing blanks.
 
-    Lines that held a comment only are left out. A lone '#' right below a comment is a part of it
-    if the comment goes on below, and else may be a row: the writer has to say.
+    Lines that held a comment only are left out. A lone '#' directly below a comment is a part of
+    it if the comment continues below; otherwise it could be a row, so it is refused.
     """
     lines = [line.rstrip(' \t') for line in re.split(r'\r\n|\r|\n', text)]
     unclear: int | None = None
@@ -181,7 +181,7 @@ def _texts(picture: _Picture) -> list[str]:
 
 
 def _extent(lines: list[str]) -> tuple[int, int]:
-    """First line and end of what is kept: all of a board's size or less, else without margins."""
+    """First line and end of the kept part: all if it fits a board, otherwise without margins."""
     filled = [index for index, line in enumerate(lines) if FILLED in line]
     if len(lines) <= MAX_SIDE or not filled:
         return 0, len(lines)

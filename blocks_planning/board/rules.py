@@ -1,7 +1,7 @@
 """The rules of the board, in readable Python on masks (see :mod:`.geometry`).
 
-The world, the records and everything else that is not a search use these. Searches use the
-compiled twins in :mod:`.kernels`; tests hold the two together.
+The world, the records and all other code except searches use these. Searches use the compiled
+twins in :mod:`.kernels`; tests compare both.
 
 Block-tower reconstruction is described in Binder et al. (2021), section "Task".
 """
@@ -37,7 +37,7 @@ def cells_of(board: Board, placed: Placed) -> Mask:
 
 
 def is_inside(board: Board, placed: Placed) -> bool:
-    """Whether a block is one, and lies inside the board."""
+    """Whether a block has valid sides, and lies inside the board."""
     width, height, column, row = placed
     return (
         min(width, height) >= 1
@@ -67,7 +67,7 @@ def legal_placements(task: Task, built: Mask, region: Mask) -> Iterator[Placed]:
 
 
 def shadow(board: Board, built: Mask) -> Mask:
-    """The filled cells and every cell below one: what no block can reach any more."""
+    """The filled cells and every cell below one: the cells that no block can reach any more."""
     column_mask = (1 << board.height) - 1
     result = 0
     for column in range(board.width):
@@ -83,7 +83,7 @@ def is_dead(board: Board, built: Mask, region: Mask) -> bool:
 
 
 def states_along(board: Board, built: Mask, placements: tuple[Placed, ...]) -> list[Mask]:
-    """The states on a way of placements that are known to be possible, the first included."""
+    """The states along a sequence of possible placements, including the first state."""
     states = [built]
     for placed in placements:
         states.append(states[-1] | cells_of(board, placed))

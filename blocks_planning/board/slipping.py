@@ -2,8 +2,8 @@
 
 With probability ``loss`` an order leaves the board as it is. Else, with probability ``slip``, the
 block lands one column left or right of the order, each with half of that; where it cannot land
-there, it lands as ordered. The distribution of outcomes is written down once, in
-:func:`landings`; a draw picks from it, and exact values are sums over it.
+there, it lands as ordered. Only :func:`landings` defines the
+distribution of outcomes; draws sample from it, and exact values are sums over it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.errors import ConfigurationError, InvalidInput, shown
 
 DRAW_STEPS = 1 << 53
-"""A draw is uniform over this many equal steps from 0 to 1: those of a float64."""
+"""Number of equal steps from 0 to 1 over which a draw is uniform: the precision of a float64."""
 
 
 class Landing(NamedTuple):
@@ -30,7 +30,7 @@ class Landing(NamedTuple):
 def landings(
     board: Board, built: Mask, placement: Placement, slip: float, loss: float = 0.0
 ) -> tuple[Landing, ...]:
-    """Every outcome of an order that has a chance, in the order: lost, left, right, as ordered.
+    """Every outcome of an order with a probability above 0: lost, left, right, as ordered.
 
     Args:
         board: size of the board.
@@ -40,7 +40,7 @@ def landings(
         loss: probability q that the order leaves the board as it is.
 
     Returns:
-        Outcomes whose probabilities sum to 1 but for rounding.
+        Outcomes whose probabilities sum to 1 except for rounding.
 
     Raises:
         InvalidInput: if the order is not possible.
@@ -84,7 +84,7 @@ def pick(outcomes: tuple[Landing, ...], below: Callable[[int], int]) -> Landing:
 
 
 def check_probability(name: str, value: object) -> None:
-    """Refuse what is not a probability.
+    """Refuse a value that is not a probability.
 
     Raises:
         ConfigurationError: naming the value.

@@ -1,4 +1,4 @@
-"""Whether a tower of loose blocks stands.
+"""Stability of towers of loose blocks.
 
 At both ends of every contact (:mod:`.contacts`) a force N >= 0 acts upwards on the upper block,
 and a friction T, -mu N <= T <= mu N, along the contact; the opposite forces act on the lower block.
@@ -8,7 +8,7 @@ contacts, and none with the ends moved inwards by :data:`MARGIN`, the tower is o
 
 Most towers are decided without a linear program: :func:`.contacts.is_carried` finds a solution, or
 :func:`.contacts.must_tip` shows that there is none. The rest is decided by the HiGHS solver of
-scipy. Answers are remembered by the set of blocks.
+scipy. Answers are cached by the set of blocks.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ MARGIN = Fraction(1, 50)
 FRICTION = 0.5
 """Coefficient of friction, mu. On towers that people built, 0.3 to 1.4 give the same answers."""
 REMEMBERED = 1 << 16
-"""Most towers whose answers are remembered."""
+"""Largest number of towers whose answers are cached."""
 
 _ROUNDING = 1e-9
 _NO_MARGIN = Fraction(0)
 
 
 class Stability(str, Enum):
-    """What statics says of a tower of loose blocks."""
+    """The stability of a tower of loose blocks."""
 
     STANDS = 'stands'
     EDGE = 'edge'
@@ -52,13 +52,13 @@ def stability(blocks: Iterable[Placed], friction: float = FRICTION) -> Stability
 
     Raises:
         ConfigurationError: if a linear program is needed and scipy is not installed.
-        BlocksPlanningError: if the solver gives up, which would be a defect.
+        BlocksPlanningError: if the solver fails, which indicates a defect.
     """
     return _remembered(frozenset(blocks), friction)
 
 
 def holds(blocks: Iterable[Placed], edge_stands: bool = True, friction: float = FRICTION) -> bool:
-    """Whether a tower stays up, if towers on the edge do so (``edge_stands``) or do not."""
+    """Whether a tower is stable; ``edge_stands`` decides for towers on the edge."""
     found = stability(blocks, friction)
     return found is Stability.STANDS or (edge_stands and found is Stability.EDGE)
 
@@ -71,8 +71,8 @@ def _remembered(blocks: frozenset[Placed], friction: float) -> Stability:
 
 
 def decide_fast(structure: Structure) -> Stability | None:
-    """What is known of a tower without a linear program; None if that does not decide it."""
-    # Rounding can't make up a solution: the ends are moved by more than it.
+    """The stability of a tower without a linear program; None if that is not decisive."""
+    # Rounding can't create a solution: the ends are moved by more than the rounding error.
     if is_carried(structure, float(MARGIN) + _ROUNDING):
         return Stability.STANDS
     if must_tip(structure, _NO_MARGIN):
@@ -93,7 +93,7 @@ def _is_solvable(structure: Structure, friction: float, margin: float) -> bool:
     """Whether forces balance every block.
 
     The unknowns are the parts of each end's force along the two borders of its cone of friction:
-    (mu, 1) and (-mu, 1), each 0 or more. So all that is left are equations.
+    (mu, 1) and (-mu, 1), each 0 or more. So only equations are left.
     """
     try:
         with extra('experiments'):

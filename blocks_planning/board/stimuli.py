@@ -1,8 +1,8 @@
 """Silhouettes by address: the sets that ship with the package, and files of text pictures.
 
 An *address* is ``SET`` (all silhouettes of an installed set, or of a file by its path) or
-``SET/NAME`` (one of them), such as ``cogsci2021/9`` or ``my/towers.txt/arch``. How a file looks is
-told in :mod:`.pictures`.
+``SET/NAME`` (one of them), such as ``cogsci2021/9`` or ``my/towers.txt/arch``. The form of a
+file is described in :mod:`.pictures`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Stimulus:
     silhouette: Mask
 
     def draw(self) -> str:
-        """The picture, as it stands in a file."""
+        """The picture in the form of a file."""
         return self.board.draw(self.silhouette)
 
 
@@ -47,14 +47,14 @@ def find_stimuli(address: str) -> list[Stimulus]:
     """The silhouettes that an address names, in the order of their file.
 
     Raises:
-        StimulusError: if there is no such set, file or silhouette, it can't be read, or it has
+        StimulusError: if there is no such set, file or silhouette, or it can't be read or has
             no target cell.
     """
     stimuli = _find(address)
     for stimulus in stimuli:
         if not stimulus.silhouette:
             raise StimulusError(
-                f'stimulus {shown(stimulus.name, _MOST_SHOWN)}: has no target cell, so that there '
+                f'stimulus {shown(stimulus.name, _MOST_SHOWN)}: has no target cell, so there '
                 f"is nothing to build; draw at least one '{FILLED}'"
             )
     return stimuli
@@ -90,13 +90,13 @@ def _find(address: str) -> list[Stimulus]:
 
 
 def _file_of(address: str, sets: dict[str, Path]) -> Path | None:
-    """The file that an address without a name stands for, if there is one."""
+    """The file of an address without a name, if there is one."""
     if address in sets:
         return sets[address]
     path = Path(address)
     try:
         return path if address and path.exists() else None
-    except (OSError, ValueError):  # too long for the file system, or with a NUL
+    except (OSError, ValueError):  # the address is too long for the file system, or contains a NUL
         return None
 
 

@@ -1,4 +1,4 @@
-"""A task: what to build, and from which blocks."""
+"""A task: a silhouette to build, and the blocks to build it from."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """The ``blocks-planning`` command.
 
 Results go to stdout, progress and errors to stderr. Exit codes: 0 done, 1 a planner did not
-succeed or a record is inconsistent, 2 bad input, 3 a limit (of states, memory or time) was reached,
-130 interrupted.
+succeed, or a record is inconsistent, 2 bad input, 3 a limit (of states, memory or time) was
+reached, 130 interrupted.
 """
 
 from __future__ import annotations

@@ -34,8 +34,8 @@ def count(
 ) -> int:
     """Count the states that a breadth-first search evaluates.
 
-    For each n from 1 to --depth, the number is the sum of tree nodes at depths 1 to n, from the
-    empty board: the states that bfs evaluates when it finds no complete state.
+    For each n from 1 to --depth, the command prints the number of tree nodes at depths 1 to n below
+    the empty board. bfs evaluates that many states if it finds no complete state.
 
     If the time limit is reached, the numbers of the finished depths are printed and the exit code
     is 3. Memory does not grow with the number of states.
@@ -91,8 +91,8 @@ def exact(
     """Find the fewest blocks and the number of arrangements, or prove that there are none.
 
     The second number of arrangements counts those with the fewest blocks. If a tower needs more
-    than 20 million states (about 1 GB of memory), or more time than the limit, its row says so,
-    and the exit code is 3.
+    than 20 million states (about 1 GB of memory), or more time than the limit, its row reports
+    that, and the exit code is 3.
     """
     stimuli = find_all(addresses)
     jobs = [_exact_job(stimulus.name, task_of(stimulus, library)) for stimulus in stimuli]

@@ -35,16 +35,18 @@ DEFAULT_MODELS = (
     multiple=True,
     metavar='NAME',
     default=DEFAULT_MODELS,
-    help='A region family (rows, rectangles), then -no-cost or -no-progress; or random. May be '
-    'given several times; by default all of these.',
+    help='Model: a region family (rows, rectangles), optionally followed by -no-cost or '
+    '-no-progress, or random. May be given several times.  [default: all of these]',
 )
-@click.option('--intervals/--no-intervals', default=True, help='Profile-likelihood intervals.')
+@click.option(
+    '--intervals/--no-intervals', default=True, help='Compute profile-likelihood intervals.'
+)
 def fit(records: tuple[Path, ...], out: Path, names: tuple[str, ...], intervals: bool) -> None:
     """Fit models of choice to the regions that people or planners chose.
 
-    The command fits each session of the RECORDS (a participant, or the seed of a planner) alone,
-    and all sessions together. It writes fits.csv, parameters.csv, choices.csv and figures/fit.svg
-    and .png.
+    The command fits each session of the RECORDS (a participant, or the seed of a planner)
+    separately, and all sessions together. It writes fits.csv, parameters.csv, choices.csv and
+    figures/fit.svg and .png.
     """
     from blocks_planning.analysis.fitted import fit_figure
     from blocks_planning.analysis.style import save_figure
@@ -86,12 +88,12 @@ def _say(
     fits: list[dict[str, object]],
     sets: dict[str, ChoiceSet],
 ) -> None:
-    """Print how many choices are no options of a model, and the best model of each session."""
+    """Print how many choices are not options of a model, and the best model of each session."""
     for model in models:
         choices = sets[model.name]
         if model.regions and choices.foreign + choices.unbuildable:
             click.echo(
-                f'{model.name}: of {len(points)} choices {choices.foreign} are no region of the family, '
+                f'{model.name}: of {len(points)} choices {choices.foreign} are not regions of the family, '
                 f'{choices.unbuildable} cannot be built; they count as lapses'
             )
     for row in fits:

@@ -47,8 +47,16 @@ _LOOK_PERIOD_S = 0.2
 
 @click.command(epilog=_EXAMPLES)
 @click.argument('script', type=_PATH)
-@click.option('--out', default='trials', show_default=True, type=_PATH, help='Folder of records.')
-@click.option('--bag', type=_PATH, help='Folder of a bag to record everything in; must not exist.')
+@click.option(
+    '--out',
+    default='trials',
+    show_default=True,
+    type=_PATH,
+    help='Folder to which records are written.',
+)
+@click.option(
+    '--bag', type=_PATH, help='Folder in which to record all topics as a bag; must not exist.'
+)
 @click.option('--namespace', default='', help='Namespace of all nodes.')
 @click.option('--domain', type=int, help='ROS domain, 0 to 100.  [default: a free one]')
 @click.option(
@@ -56,27 +64,28 @@ _LOOK_PERIOD_S = 0.2
     type=click.FloatRange(0, 60),
     default=0.0,
     callback=refuse_nan,
-    help='Seconds that a placement takes, so that it can be watched.  [default: 0]',
+    help='Duration of a placement in seconds, to watch the trials.  [default: 0]',
 )
 @click.option('--view', is_flag=True, help='Serve a web page that shows the trials live.')
 @click.option(
     '--view-host',
     default='127.0.0.1',
     show_default=True,
-    help='Address to serve the page on; other than on this machine it requires a token.',
+    help='Address on which to serve the page; an address outside this machine requires a token.',
 )
 @click.option(
     '--view-port',
     type=click.IntRange(0, 65535),
     default=0,
-    help='Port to serve the page on.  [default: a free one]',
+    help='Port on which to serve the page.  [default: a free one]',
 )
 @click.option('--participant', default='', help='Code of the person who plans in this session.')
 @click.option('--markers', is_flag=True, help='Publish markers for RViz and Foxglove.')
 @click.option(
     '--pictures/--no-pictures',
     default=None,
-    help=f'Draw the first {_MOST_PICTURES} trials.  [default: only if the script has no more]',
+    help=f'Draw the first {_MOST_PICTURES} trials.  [default: only if the script has at most '
+    f'{_MOST_PICTURES}]',
 )
 def run(
     script: Path,
@@ -94,15 +103,17 @@ def run(
 ) -> int:
     """Start the ROS graph and run the trials of a script through it.
 
-    Records go to trials.jsonl in the folder --out; trials that have a record there are not run
-    again. Pictures of trials go to its subfolder pictures. The exit code is 1 if a tower was not
-    rebuilt perfectly.
+    The command writes records to trials.jsonl in the folder --out, and pictures of trials to its
+    subfolder pictures. Trials that have a record there are not run again. The exit code is 1 if a
+    tower was not rebuilt perfectly.
     """
     specs = read_script(script, participant)
     try:
         from blocks_planning.ros.bringup import Bringup, BringupSpec
     except ImportError as error:
-        raise BlocksPlanningError(f'ROS 2 is not installed here: {error}') from None
+        raise BlocksPlanningError(
+            f'ROS 2 is not installed in this Python environment: {error}'
+        ) from None
     if view:
         import_module('blocks_planning.view.web.server')  # report a missing extra before the start
     draw = _drawing(pictures, len(specs))

@@ -30,7 +30,7 @@ Examples:
 @click.command('import', epilog=_EXAMPLES)
 @click.argument('paths', metavar='FILE...', type=_PATH, nargs=-1, required=True)
 @click.option(
-    '--out', type=_PATH, help='The .txt file to write; without it towers are only shown.'
+    '--out', type=_PATH, help='The .txt file to write; without it the towers are only shown.'
 )
 @click.option('--replace', is_flag=True, help='Overwrite the file if it exists.')
 @click.option(
@@ -62,11 +62,11 @@ def import_towers(
 ) -> None:
     """Read towers from JSON, CSV or text files and write them as text pictures.
 
-    A JSON file holds block lists, {"blocks": [{"x": 0, "y": 0, "width": 2, "height": 1}]} with y
+    A JSON file contains block lists, {"blocks": [{"x": 0, "y": 0, "width": 2, "height": 1}]} with y
     upwards, or grids, [[0, 1], [1, 1]] with the top row first, or lists or objects of them. A grid
-    of booleans is a map: map[x][y] is true where the cell is empty, with y upwards. A CSV file holds
-    grids, with blank lines between them. The command shows every tower as it read it: if a tower
-    is on its side or upside down, set --lists or --y.
+    of booleans is a map: map[x][y] is true where the cell is empty, with y upwards. A CSV file
+    contains grids, with blank lines between them. The command shows every tower as it read it: if a
+    tower is on its side or upside down, set --lists or --y.
     """
     inverted = None if meaning is None else meaning == 'empty'
     reading = Reading(lists, upwards, inverted, trim)

@@ -49,7 +49,7 @@ def verify(paths: tuple[Path, ...], rerun: bool) -> int:
             for sentence in sentences:
                 click.echo(f'{place}: {sentence}')
         click.echo(f'{path}: {count} records read')
-    click.echo('all hold' if not wrong else f'{wrong} do not hold')
+    click.echo('all consistent' if not wrong else f'{wrong} inconsistent')
     return int(bool(wrong))
 
 
@@ -65,7 +65,7 @@ def _complaints_of_file(path: Path) -> _Complaints:
 
 
 def _complaints_of_bag(path: Path) -> _Complaints:
-    """The records of a bag, each with its contradictions; None for those of no record."""
+    """The records of a bag, each with its contradictions; None for contradictions of no record."""
     bags = _import_bags(path)
     for repair in bags.repair(path):
         click.echo(repair)
@@ -108,7 +108,9 @@ def _import_bags(path: Path) -> ModuleType:
 )
 @click.argument('path', metavar='RECORD', type=_RECORD)
 @click.option('--out', required=True, type=_RECORD, help='A .png, .svg, .pdf or .gif file.')
-@click.option('--record', 'number', type=click.IntRange(1), help='Number of the record, from 1.')
+@click.option(
+    '--record', 'number', type=click.IntRange(1), help='Number of the record or trial, from 1.'
+)
 def draw(path: Path, out: Path, number: int | None) -> None:
     """Draw the tower of a record, or of a trial in a bag; a .gif shows it block by block."""
     from blocks_planning.view.picture import save_picture

@@ -11,7 +11,7 @@ from blocks_planning.search.result import CancelToken
 
 T = TypeVar('T')
 TICK_S = 0.1
-"""How often the main thread looks at a time limit and shows progress [s]."""
+"""Period at which the main thread checks the time limit and shows progress [s]."""
 
 
 class Ended(NamedTuple, Generic[T]):

@@ -73,7 +73,7 @@ Examples:
     type=click.IntRange(1),
     default=2_000,
     show_default=True,
-    help='Most candidates that are tried per tower.',
+    help='Largest number of candidates to try per tower.',
 )
 @library_option
 def make_command(

@@ -83,7 +83,7 @@ _TRIAL_OPTIONS: tuple[Decorator, ...] = (
         type=int,
         default=DEFAULT_BUDGET,
         show_default=True,
-        help='States evaluated after which a solve starts no further attempt; 0: one attempt.',
+        help='Number of evaluated states after which a solve starts no further attempt; 0: one attempt.',
     ),
     click.option('--seed', type=int, default=0, show_default=True, help='Seed for tie-breaking.'),
     library_option,

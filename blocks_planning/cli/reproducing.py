@@ -73,8 +73,8 @@ def reproduce(out: Path, quick: bool, workers: int | None) -> int:
 _QUICK_TOWERS = 4
 """Number of towers, the last ones, whose sizes a quick run counts: some take seconds."""
 _QUICK = (
-    'This is a quick run: few seeds, few values of lambda. Its numbers show that everything works, '
-    'and say little about the paper.'
+    'This is a quick run with few seeds and few values of lambda. It only shows that everything '
+    'works; do not compare its numbers with the paper.'
 )
 
 
@@ -136,7 +136,7 @@ def growth(out: Path, towers: int, seeds: int, largest: int, workers: int | None
 
 def _law_of(fit: dict[str, Any] | None) -> str:
     if fit is None:
-        return 'no law: fewer than 3 sizes have a cost'
+        return 'not fitted: fewer than 3 sizes have a cost'
     return f'{fit["law"]:11} {fit["base"]:6.2f} (R2 {fit["r2"]:.2f})'
 
 
@@ -148,7 +148,9 @@ def _law_of(fit: dict[str, Any] | None) -> str:
 @stimuli_argument
 @click.option('--search', type=click.Choice(['bfs', 'random']), default='bfs', show_default=True)
 @click.option(
-    '--depth', type=click.IntRange(1, 64), help='Placements that bfs looks ahead.  [default: 3]'
+    '--depth',
+    type=click.IntRange(1, 64),
+    help='Number of placements bfs looks ahead.  [default: 3]',
 )
 @click.option(
     '--budget',
@@ -162,15 +164,15 @@ def _law_of(fit: dict[str, Any] | None) -> str:
     type=click.IntRange(1),
     default=2_000_000,
     show_default=True,
-    help='Most states to examine per tower.',
+    help='Largest number of states to examine per tower.',
 )
 @click.option(
     '--slip',
     'slips',
     type=float,
     multiple=True,
-    help='Chance that a block lands one column left or right of its order, 0 to 1; may be given '
-    'several times. Compares the best possible policy with bfs and random.',
+    help='Probability that a block lands one column left or right of its order, 0 to 1; may be '
+    'given several times. Compares the best possible policy with bfs and random.',
 )
 @time_limit_option
 @library_option
@@ -192,9 +194,9 @@ def exact_policy(
 
     The output has the success and expected cost of one attempt, and the success of repeated
     attempts within the budget. If a tower needs more states than the limit, or more memory (640 MB
-    for costs) or time, its row says so, and the exit code is 3. With --slip, the output has the
-    highest success of any policy in a world where blocks slip, and the success of one attempt of
-    bfs and of random.
+    for costs) or time, its row reports that, and the exit code is 3. With --slip, the output has
+    the highest success of any policy in a world where blocks slip, and the success of one attempt
+    of bfs and of random.
     """
     if slips:
         from blocks_planning.cli.slipping import print_slips

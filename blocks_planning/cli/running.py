@@ -64,7 +64,7 @@ def solve(
     as_json: bool,
     **options: Any,
 ) -> int:
-    """Run trials and print a table, or a record per line.
+    """Run trials and print a table, or one record per line with --json.
 
     The exit code is 1 if a tower was not rebuilt perfectly, and 3 if the time limit ended a trial
     or a search exceeded its memory (1 GB).

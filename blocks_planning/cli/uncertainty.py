@@ -10,25 +10,26 @@ import click
 from blocks_planning.cli.progress import bar
 from blocks_planning.cli.sweeping import out_option, print_summary, workers_option
 
-_QUICK = 'This is a quick run: few seeds and worlds. It shows that everything works, no more.'
+_QUICK = 'This is a quick run with few seeds and worlds. It only shows that everything works.'
 
 
 @click.command(epilog='\b\nExample:\n  blocks-planning uncertain --out uncertain')
 @out_option
-@click.option('--quick', is_flag=True, help='Few seeds and worlds: a look in seconds.')
+@click.option('--quick', is_flag=True, help='Use few seeds and worlds; takes seconds.')
 @click.option(
     '--first-seed',
     type=click.IntRange(0, 2**63),
     default=0,
     show_default=True,
-    help='The lowest seed; another one is another sample.',
+    help='First seed; another one gives another sample.',
 )
 @workers_option
 def uncertain(out: Path, quick: bool, first_seed: int, workers: int | None) -> int:
-    """Run planners in worlds that slip, lose and topple blocks; write report.html, results.json.
+    """Measure planners in worlds where blocks slip, are lost, or fall.
 
-    The best that any policy can reach stands beside them. Interrupted and started again it goes
-    on where it stopped. The exit code is 1 if a trial could not be run.
+    The command writes report.html and results.json, with the best possible policy for comparison.
+    After an interruption, the same command continues. The exit code is 1 if a trial could not be
+    run.
     """
     from blocks_planning.analysis.uncertainty_report import write_uncertainty
     from blocks_planning.experiments.optima import optimum_table

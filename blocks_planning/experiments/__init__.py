@@ -1,1 +1,1 @@
-"""Sweeps of many trials: what to run, running it anywhere, and the tables it leaves."""
+"""Sweeps of many trials: their specification, their execution, and their tables."""

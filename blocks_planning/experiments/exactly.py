@@ -18,13 +18,13 @@ from blocks_planning.trials.script import Tower
 
 
 def exact_table(sweep: SweepSpec, workers: int, budget: int = DEFAULT_BUDGET) -> list[Any]:
-    """The exact values of every bfs and random search of a sweep whose trials are one attempt.
+    """The exact values of every bfs and random search of a sweep in single-attempt trials.
 
     Returns:
         A dict per search: its name and settings; ``success`` of one attempt, mean over towers;
-        ``states_evaluated`` of one that succeeds, mean over the towers where that can be;
+        ``states_evaluated`` of a successful attempt, mean over the towers where one can succeed;
         ``within_budget``: success of attempts until ``budget`` [states], mean over towers. The
-        numbers are None if a tower outgrows the limit of states.
+        numbers are None if a tower exceeds the limit of states.
     """
     with extra('experiments'):
         from joblib import Parallel, delayed

@@ -1,4 +1,4 @@
-"""How planning costs grow with the board: generated towers, planned by every planner.
+"""Growth of planning costs with the board: generated towers with every planner.
 
 A tower is made by dropping random blocks until most of the board is filled, so it can be rebuilt.
 """
@@ -23,7 +23,7 @@ from blocks_planning.subgoals.scoping import Scoping
 from blocks_planning.trials.script import Tower
 
 FULLNESS = 0.7
-"""Share of the board that a generated tower fills, at least, if blocks still fit."""
+"""Least share of the board that a generated tower fills, as long as blocks fit."""
 BASE_SIDE = 8
 SIDES = (4, 6, 8, 10, 12, 14, 16)
 
@@ -35,7 +35,7 @@ def generate_tower(
 
     Args:
         board: its size.
-        rng: of the choices; same generator, same tower.
+        rng: generator of the choices; the same generator gives the same tower.
         library: the blocks.
 
     Returns:
@@ -65,7 +65,7 @@ def growth_sweep(
         towers: number of towers of each size.
         seeds: number of trials of each tower and planner.
         sides: the heights and the widths [cells].
-        search: bfs of depth 2 if left out, the fastest that still looks ahead.
+        search: by default bfs of depth 2, the fastest search that looks ahead.
         budget: b of every solve [states].
         seed: of the generated towers.
     """

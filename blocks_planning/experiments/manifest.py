@@ -1,4 +1,4 @@
-"""What ran a sweep: versions, revision of the sources, and machine."""
+"""The manifest of a sweep: versions, revision of the sources, and machine."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LIBRARIES = ('numpy', 'numba', 'pandas', 'pyarrow', 'scipy', 'joblib', 'distrib
 
 
 def provenance() -> dict[str, Any]:
-    """Everything about this process that a reader of its results may want to know."""
+    """Versions, revision and machine of this process."""
     return {
         'blocks_planning': __version__,
         'git_revision': _git_revision(),
@@ -38,7 +38,7 @@ def _version(name: str) -> str | None:
 
 
 def _git_revision() -> str | None:
-    """The commit of the checkout that the package lies in, with '+' if files differ from it."""
+    """The commit of the checkout of this package, followed by '+' if files differ from it."""
     folder = Path(__file__).resolve().parents[2]
     if not (folder / '.git').exists():
         return None

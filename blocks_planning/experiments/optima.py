@@ -1,4 +1,4 @@
-"""The best that any policy can reach on the towers of a sweep, at the slips of its worlds."""
+"""The success of the best policy on the towers of a sweep, at the slips of its worlds."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from blocks_planning.trials.script import Tower
 from blocks_planning.worlds.world import Simulated
 
 _MOST_AT_ONCE = 2
-"""Towers that are analysed at the same time; each takes up to 0.5 GB."""
+"""Number of towers that are analysed at the same time; each takes up to 0.5 GB."""
 
 
 def optimum_table(sweep: SweepSpec, folder: Path, workers: int) -> list[dict[str, Any]]:
-    """The optimum of every tower at every slip of a sweep; kept in ``folder``, found once.
+    """The optimum of every tower at every slip of a sweep; computed once and kept in ``folder``.
 
     Returns:
         A dict per tower and slip: ``stimulus``, ``slip`` and ``optimum``, a probability. It is
@@ -52,7 +52,7 @@ def optimum_table(sweep: SweepSpec, folder: Path, workers: int) -> list[dict[str
 
 
 def slips_of(sweep: SweepSpec) -> list[float]:
-    """The slips of a sweep's simulated worlds, rising."""
+    """The slips of the simulated worlds of a sweep, in rising order."""
     return sorted(
         {
             world.slip

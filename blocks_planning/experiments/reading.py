@@ -4,20 +4,20 @@
 
     name: lambdas                # of the sweep
     stimuli: [cogsci2021]        # addresses, as on the command line
-    library: 1x2,2x1,2x2         # optional: the paper's library if left out
-    seeds: 32                    # how many, from first_seed upwards
+    library: 1x2,2x1,2x2         # optional; default: the paper's library
+    seeds: 32                    # number of seeds, from first_seed upwards
     first_seed: 0                # optional
     experiments:
-      - name: bfs                # rows of the tables say which experiment they belong to
+      - name: bfs                # the tables have this name in a column
         budget: 100000           # optional [states]
         searches:
           - {name: bfs, depth: [2, 3]}
         strategies:
           - {name: scoping, lambda: {from: 0, to: 0.008, count: 64}}
-        worlds: [{name: simulated}]   # optional: one that obeys if left out
+        worlds: [{name: simulated}]   # optional; default: every order is obeyed
 
-A setting may be a list, or evenly spaced numbers ``{from, to, count}`` with both ends: then there
-is one search, strategy or world for each value, and for each combination of values if there are
+A setting may be a list, or evenly spaced numbers ``{from, to, count}`` with both ends. Then there
+is one search, strategy or world for each value, or for each combination of values if there are
 several lists. Paths of stimuli are relative to the working directory.
 """
 
@@ -53,8 +53,8 @@ def read_sweep(path: Path) -> SweepSpec:
     """Read a sweep.
 
     Raises:
-        ConfigurationError: naming file, line and key, for what is unknown, missing, or out of its
-            range, and for two experiments of one name.
+        ConfigurationError: naming file, line and key, for an unknown or missing key, a value out of
+            range, or two experiments with the same name.
     """
     top = read_yaml(path).entries(
         'name', 'stimuli', 'seeds', 'experiments', optional=('library', 'first_seed')

@@ -1,6 +1,6 @@
 """Running chunks: in this process, in several of this machine, or on the workers of Dask.
 
-Results come in any order and are the same wherever they come from.
+Results arrive in any order and do not depend on where they were computed.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ Results = Generator[tuple[Chunk, Tables], None, None]
 
 CONNECT_TIMEOUT_S = 10
 IN_FLIGHT_PER_THREAD = 4
-"""Chunks that each thread of a Dask worker has waiting, so that it is never without work."""
+"""Number of waiting chunks per thread of a Dask worker, so that it always has work."""
 
 
 def default_workers() -> int:
     """Number of processors that this process may use."""
     if hasattr(os, 'sched_getaffinity'):
         return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1  # macOS and Windows bind no process to processors
+    return os.cpu_count() or 1  # macOS and Windows have no processor affinity here
 
 
 def run_here(chunks: Sequence[Chunk], workers: int) -> Results:
-    """Run chunks in so many processes of this machine; one runs them in this process."""
+    """Run chunks in several processes of this machine; with one worker, in this process."""
     with extra('experiments'):
         from joblib import Parallel, delayed
 
@@ -38,22 +38,22 @@ def run_here(chunks: Sequence[Chunk], workers: int) -> Results:
         for chunk in chunks:
             yield chunk, run_chunk(chunk)
         return
-    # Ordered, because older releases of joblib know no other way; chunks are small.
+    # Ordered, because older releases of joblib have no other mode; chunks are small.
     parallel = Parallel(n_jobs=workers, return_as='generator')
     results = parallel(delayed(run_chunk)(chunk) for chunk in chunks)
     try:
         yield from zip(chunks, results, strict=True)
     finally:
         with warnings.catch_warnings():
-            warnings.simplefilter('ignore', UserWarning)  # about chunks that nobody waits for
+            warnings.simplefilter('ignore', UserWarning)  # warnings about cancelled chunks
             results.close()
 
 
 def run_on_dask(chunks: Sequence[Chunk], address: str) -> Results:
-    """Run chunks on a Dask cluster. What a worker that dies was doing is given to another.
+    """Run chunks on a Dask cluster. If a worker dies, another one repeats its chunks.
 
     Raises:
-        ConfigurationError: if nothing answers at the address.
+        ConfigurationError: if the scheduler cannot be reached.
     """
     with extra('experiments'):
         from dask.distributed import Client, as_completed

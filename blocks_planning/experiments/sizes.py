@@ -1,4 +1,4 @@
-"""How large the towers of a sweep are, for a report: states, and sequences of placements."""
+"""Sizes of the towers of a sweep, for a report: states, and sequences of placements."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def size_table(towers: Sequence[Tower], workers: int) -> list[dict[str, Any]]:
 
     Returns:
         A dict per tower: ``tower``, ``cells``, ``states``, ``complete_sequences`` and
-        ``sequences``. The numbers are None if the tower outgrows a limit.
+        ``sequences``. The numbers are None if the tower exceeds a limit.
     """
     with extra('experiments'):
         from joblib import Parallel, delayed

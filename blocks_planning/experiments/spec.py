@@ -1,7 +1,7 @@
-"""A sweep: which trials to run, and how they are cut into chunks of work.
+"""A sweep: its trials, and their division into chunks of work.
 
-A chunk is some seeds of one stimulus with every planner of one experiment: the largest piece
-whose trials can share their solves. Its identity is a digest of all that its results follow from.
+A chunk has some seeds of one stimulus with every planner of one experiment: the largest part
+whose trials can share their solves. Its id is a digest of everything that determines its results.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ class Experiment:
     """Every search with every strategy in every world.
 
     Attributes:
-        name: by which rows of the tables say where they come from.
+        name: in a column of the tables.
         searches: the action-level searches.
         strategies: the subgoal planners.
         budget: b of every solve [states]; 0 for a single attempt.
-        worlds: in which they are tried.
+        worlds: the worlds.
     """
 
     name: str
@@ -79,7 +79,7 @@ class Chunk:
 
     @cached_property
     def chunk_id(self) -> str:
-        """A name made of everything that the results follow from, 16 hexadecimal digits."""
+        """Digest of everything that determines the results, 16 hexadecimal digits."""
         content = [
             __version__,
             experiment_to_json(self.experiment),
@@ -110,11 +110,11 @@ class SweepSpec:
 
     @cached_property
     def sweep_id(self) -> str:
-        """A digest of all that the tables follow from, 16 hexadecimal digits."""
+        """Digest of everything that determines the tables, 16 hexadecimal digits."""
         return _digest([chunk.chunk_id for chunk in self.chunks()])
 
     def to_json(self) -> dict[str, Any]:
-        """The sweep for a manifest, with nothing left to defaults."""
+        """The sweep for a manifest, with all settings written out."""
         return {
             'name': self.name,
             'seeds': list(self.seeds),

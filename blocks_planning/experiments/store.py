@@ -1,15 +1,15 @@
-"""Where a sweep is kept: a folder with its manifest, its tables, and parts while it runs.
+"""The folder of a sweep: its manifest, its tables, and parts while it runs.
 
 ::
 
-    DIR/manifest.json       the sweep, and what ran it
-    DIR/trials.parquet      see :mod:`.tables`; written when everything is there
+    DIR/manifest.json       the sweep, with versions and machine
+    DIR/trials.parquet      see :mod:`.tables`; written at the end
     DIR/decisions.parquet
     DIR/placements.parquet
-    DIR/parts/ID/           the tables of each chunk, until then
+    DIR/parts/ID/           the tables of each chunk, until the end
 
-A part is written under another name and then renamed, so that one that exists is whole. What is
-on disk says what is still to do.
+A part is written under another name and then renamed, so an existing part is complete. The parts
+on disk determine which chunks are missing.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Store:
     """The folder of one sweep.
 
     Raises:
-        ConfigurationError: if the folder can't be made, or holds another sweep.
+        ConfigurationError: if the folder can't be created, or contains another sweep.
     """
 
     def __init__(self, folder: Path, sweep: SweepSpec) -> None:
@@ -49,15 +49,15 @@ class Store:
         there = self.manifest()
         if there and there.get('sweep_id') != sweep.sweep_id:
             raise ConfigurationError(
-                f'--out {folder}: holds another sweep ({there.get("sweep_id")}, not '
-                f'{sweep.sweep_id}); name another folder'
+                f'--out {folder}: contains another sweep ({there.get("sweep_id")}, not '
+                f'{sweep.sweep_id}); choose another folder'
             )
 
     def manifest(self) -> dict[str, Any]:
-        """What is written in the manifest; empty if there is none.
+        """The content of the manifest; empty if there is none.
 
         Raises:
-            ConfigurationError: if the file is no manifest.
+            ConfigurationError: if the file is not a manifest.
         """
         path = self.folder / MANIFEST
         if not path.exists():
@@ -71,18 +71,18 @@ class Store:
         return found
 
     def write_manifest(self, manifest: dict[str, Any]) -> None:
-        """Write the manifest, at once."""
+        """Write the manifest atomically."""
         part = self.folder / f'{MANIFEST}.part'
         part.write_text(json.dumps(manifest, indent=2) + '\n', encoding='utf-8')
         part.replace(self.folder / MANIFEST)
 
     @property
     def is_complete(self) -> bool:
-        """Whether the tables are there."""
+        """Whether the tables exist."""
         return all((self.folder / f'{name}.parquet').is_file() for name in Tables._fields)
 
     def missing(self) -> list[Chunk]:
-        """The chunks that are still to be run."""
+        """The chunks that have not been run yet."""
         chunks = self._sweep.chunks()
         return [chunk for chunk in chunks if not (self._parts / chunk.chunk_id).is_dir()]
 
@@ -95,7 +95,7 @@ class Store:
         half.rename(self._parts / chunk.chunk_id)
 
     def finish(self) -> None:
-        """Write the tables from all parts, in the order of the sweep, and drop the parts."""
+        """Write the tables from all parts, in the order of the sweep, and delete the parts."""
         chunks = self._sweep.chunks()
         half = self.folder / 'tables.half'
         shutil.rmtree(half, ignore_errors=True)
@@ -115,7 +115,7 @@ def read_table(folder: Path, name: str, columns: list[str] | None = None) -> pa.
     """
     path = folder / f'{name}.parquet'
     if not path.is_file():
-        raise ConfigurationError(f'{path}: is not there; has the sweep been finished?')
+        raise ConfigurationError(f'{path}: does not exist; has the sweep been finished?')
     return pq.read_table(path, columns=columns)
 
 

@@ -1,4 +1,4 @@
-"""A sweep from its specification to its tables, going on where it stopped."""
+"""Runs a sweep from its specification to its tables; continues an interrupted one."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ with extra('experiments'):
     import pyarrow.compute as pc
 
 Report = Callable[[int, int], None]
-"""Is told how many trials are done, and how many there are."""
+"""Called with the number of finished trials and the number of all trials."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Summary:
     Attributes:
         trials: number of trials.
         statuses: number of trials by status.
-        failures: what went wrong, with the number of trials that it went wrong for.
+        failures: reasons of failed trials, with the number of trials for each.
     """
 
     trials: int
@@ -49,17 +49,17 @@ def run_sweep(
     dask: str | None = None,
     report: Report | None = None,
 ) -> Summary:
-    """Run what is still missing of a sweep, and write its tables.
+    """Run the missing chunks of a sweep, and write its tables.
 
     Args:
         sweep: what to run.
-        folder: where the tables are kept; see :mod:`.store`.
+        folder: folder of the tables; see :mod:`.store`.
         workers: processes of this machine.
-        dask: address of a Dask scheduler to be used instead.
-        report: is called at the start and after each chunk.
+        dask: address of a Dask scheduler to use instead.
+        report: called at the start and after each chunk.
 
     Raises:
-        ConfigurationError: if the folder holds another sweep, or Dask can't be reached.
+        ConfigurationError: if the folder contains another sweep, or Dask can't be reached.
     """
     store = Store(folder, sweep)
     if not store.is_complete:

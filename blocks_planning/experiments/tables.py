@@ -1,13 +1,13 @@
 """The tables of a sweep.
 
 ``trials``        a row per trial: planner, world, seed, status, costs [states] and measures
-``decisions``     a row per decision: what was considered, and what was chosen
+``decisions``     a row per decision: the candidates and the choice
 ``placements``    a row per block that stands at the end [cells]
-``observations``  a row per observation after the first: what was ordered, what landed, what is
-                  gone; only of worlds that need not obey, because in others each observation is
-                  its placement
+``observations``  a row per observation after the first: the order, and the blocks that landed
+                  or are gone; only for worlds that may deviate from orders, because in others
+                  each observation equals its order
 
-``trial_id`` joins them. A trial that could not be run has status ``failed`` and says why in
+``trial_id`` joins them. A trial that could not be run has status ``failed`` and the reason in
 ``error``; its numbers are empty, and it has no rows in the other tables.
 """
 
@@ -65,7 +65,7 @@ DECISIONS = pa.schema(
         ('built', pa.string()),  # the state, as a hexadecimal mask
         ('candidates', pa.int32()),
         ('sequences', pa.int64()),  # chains that exist; more than the candidates if sampled
-        ('solved', pa.int32()),  # candidates that are
+        ('solved', pa.int32()),  # number of solved candidates
         ('regions', pa.list_(pa.string())),  # labels of the chosen regions; empty if it gave up
         ('tops', pa.list_(pa.int32())),  # number of rows up to the top of each chosen region
         ('cells', pa.int32()),  # that the chosen candidate adds
@@ -115,7 +115,7 @@ def schemas() -> Tables:
 
 
 class Failure(NamedTuple):
-    """A trial that could not be run, and why."""
+    """A trial that could not be run, and the reason."""
 
     spec: TrialSpec
     error: str
@@ -183,7 +183,7 @@ def _chosen(decision: Decision, board: Board) -> dict[str, Any]:
 
 
 def _observation_rows(records: Sequence[TrialRecord]) -> Iterator[dict[str, Any]]:
-    """A row per observation after the first, of the trials whose world need not obey."""
+    """A row per observation after the first, of trials whose world may deviate from orders."""
     for record in records:
         if record.spec.world.obeys:
             continue
@@ -217,7 +217,7 @@ def _placement_table(records: Sequence[TrialRecord]) -> pa.Table:
 
 
 def join(parts: Sequence[Tables]) -> Tables:
-    """Tables one below the other; equal rows give equal tables, however they were cut."""
+    """Tables concatenated; the result does not depend on how the rows were divided."""
     return Tables(
         *(
             pa.concat_tables(tables).unify_dictionaries().combine_chunks()

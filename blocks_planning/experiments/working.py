@@ -1,4 +1,4 @@
-"""The work of a sweep: a chunk in, its tables out. Runs in any process on any machine."""
+"""Runs a chunk of a sweep and returns its tables; in any process on any machine."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from blocks_planning.trials.spec import TrialSpec
 def run_chunk(chunk: Chunk) -> Tables:
     """Run the trials of a chunk, each solve once.
 
-    A trial that can't be run becomes a row that says why: one tower that outgrows a limit must
-    not cost the rest of a long sweep.
+    A trial that can't be run becomes a row with the reason, so that one tower that exceeds a limit
+    does not end a long sweep.
     """
     outcomes: list[TrialRecord | Failure] = []
     for group in chunk.groups():
@@ -28,8 +28,8 @@ def run_chunk(chunk: Chunk) -> Tables:
 def _run(spec: TrialSpec, answers: dict[Query, SolveResult]) -> TrialRecord | Failure:
     try:
         record = follow(spec, answers)
-    except Exception as error:  # noqa: BLE001  it is kept, shown, and makes the sweep fail
+    except Exception as error:  # noqa: BLE001  it is stored and shown, and the sweep fails
         return Failure(spec, f'{type(error).__name__}: {error}')
     if ended_at_a_limit(record):
-        return Failure(spec, f'{spec.search.name}: the search would have outgrown its memory')
+        return Failure(spec, f'{spec.search.name}: the search would have exceeded its memory')
     return record

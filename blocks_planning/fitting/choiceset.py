@@ -1,4 +1,4 @@
-"""Choices as flat arrays, which a likelihood is computed on in one go."""
+"""Choices as flat arrays, for vectorised likelihoods."""
 
 from __future__ import annotations
 
@@ -12,29 +12,29 @@ from blocks_planning.fitting.options import Option, OptionMaker, drawable
 from blocks_planning.fitting.points import ChoicePoint
 
 Report = Callable[[int, int], None]
-"""Is told how many choices are ready, and how many there are."""
+"""Called with the number of finished choices and the number of all choices."""
 NONE = -1
 
 
 @dataclass(frozen=True)
 class ChoiceSet:
-    """Choices with all that could have been chosen, under one option maker.
+    """Choices with all their options, under one option maker.
 
-    Options stand choice by choice, sequences option by option. Options that cannot be built have
-    no value and are left out.
+    Options are ordered by choice, sequences by option. Options that cannot be built have no value
+    and are omitted.
 
     Attributes:
         cells: r of each sequence [cells], float64 (sequences,).
         cost: c of each sequence [states], float64 (sequences,).
         option_starts: index of each option's first sequence, int64 (options,).
         choice_starts: index of each choice's first option, int64 (choices,).
-        chosen: index of the chosen option among all, or ``NONE``: the region was no candidate, or
-            one that cannot be built; int64 (choices,).
+        chosen: index of the chosen option among all, or ``NONE`` if the region was not a
+            candidate or cannot be built; int64 (choices,).
         drawable: see :func:`.options.drawable`, float64 (choices,).
         tower: of each choice, str (choices,).
         session: of each choice, str (choices,).
         unbuildable: number of chosen regions that are candidates but cannot be built.
-        foreign: number of chosen regions that are no candidates.
+        foreign: number of chosen regions that are not candidates.
     """
 
     cells: np.ndarray
@@ -61,7 +61,7 @@ class ChoiceSet:
         Args:
             keep: bool (choices,), or indices, int64 (kept,).
 
-        ``unbuildable`` and ``foreign`` are not known for a part and are 0.
+        ``unbuildable`` and ``foreign`` are unknown for a subset and are 0.
         """
         wanted = np.arange(len(self))[keep]
         options, choice_starts = _slices(self.choice_starts, self.option_ends(), wanted)
@@ -88,7 +88,7 @@ class ChoiceSet:
 def _slices(
     starts: np.ndarray, ends: np.ndarray, wanted: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The indices within some groups, one group after the other, and where each now starts."""
+    """The indices within some groups, concatenated, and the new start of each group."""
     sizes = ends[wanted] - starts[wanted]
     begins = np.cumsum(sizes) - sizes
     indices = np.arange(sizes.sum()) + np.repeat(starts[wanted] - begins, sizes)
@@ -103,7 +103,7 @@ def choice_set(
     Args:
         points: states and chosen regions.
         maker: gives the options of each state.
-        report: is called after each choice, as solves may take long.
+        report: called after each choice, because solves can take long.
     """
     cells: list[int] = []
     cost: list[int] = []

@@ -1,4 +1,4 @@
-"""Models against each other: fits of each session and of all, scored on the same choices."""
+"""Comparison of models: fits of each session and of all, scored on the same choices."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ class Makers:
         """The maker of a model's options; the random model takes those of ``rows``.
 
         Raises:
-            ConfigurationError: for a horizon that nothing makes options for.
+            ConfigurationError: for a horizon without an option maker.
         """
         key = model.regions or 'rows', model.horizon
         if key not in self._made:
             if model.horizon != 1:
                 raise ConfigurationError(
-                    f'model {model.name}: no planner with horizon {model.horizon} is plugged in; '
+                    f'model {model.name}: no option maker for horizon {model.horizon} is registered; '
                     'use horizon 1'
                 )
             self._made[key] = OneAhead(key[0], self._solves)
@@ -85,9 +85,9 @@ def compare_models(
 
     Args:
         sets: the same choices as each model sees them, by the model's name.
-        models: to be compared.
+        models: the models to compare.
         intervals: whether to compute profile-likelihood intervals.
-        report: is called after each fit.
+        report: called after each fit.
 
     Returns:
         Rows of two tables: of fits and of parameters; see docs/fitting.md for their columns.
@@ -128,7 +128,7 @@ def _fit_row(session: str, choices: ChoiceSet, found: Fit) -> dict[str, Any]:
 
 
 def _with_differences(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Rows of one session with the distance to the best of it, and which one that is."""
+    """Rows of one session with the differences from the best model of the session."""
     for score in ('aic', 'bic'):
         least = min(row[score] for row in rows)
         for row in rows:

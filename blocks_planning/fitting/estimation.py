@@ -42,21 +42,21 @@ class Fit:
 
     @property
     def aic(self) -> float:
-        """Akaike's criterion: less is better."""
+        """Akaike's criterion: lower is better."""
         return 2 * len(self.model.parameters) - 2 * self.log_likelihood
 
     @property
     def bic(self) -> float:
-        """Bayes's criterion: less is better."""
+        """Bayes's criterion: lower is better."""
         penalty = len(self.model.parameters) * math.log(max(1, self.choices))
         return penalty - 2 * self.log_likelihood
 
 
 def fit(choices: ChoiceSet, model: Model) -> Fit:
-    """The parameters under which some choices are likeliest.
+    """The parameters of maximum likelihood of some choices.
 
-    Parameters are looked for within :data:`.models.BOUNDS`, from several starts; the result
-    depends on nothing but the arguments.
+    Parameters are optimised within :data:`.models.BOUNDS`, from several starts; the result
+    depends only on the arguments.
     """
     values = _maximise(choices, model, {})
     return Fit(model, values, log_likelihood(choices, model, values), len(choices))
@@ -70,10 +70,10 @@ def log_likelihood(choices: ChoiceSet, model: Model, values: Mapping[str, float]
 def profile_interval(
     choices: ChoiceSet, found: Fit, parameter: str
 ) -> tuple[float | None, float | None]:
-    """The 95 % profile-likelihood interval of a parameter; None where it does not end.
+    """The 95 % profile-likelihood interval of a parameter; None for an end without a bound.
 
-    For each value of the parameter the others are fitted anew. The interval has all values whose
-    log likelihood is less than 1.92 below the highest.
+    For each value of the parameter the others are fitted again. The interval contains all values
+    whose log likelihood is less than 1.92 below the highest.
     """
     low, high = (_scaled(parameter, bound) for bound in BOUNDS[parameter])
     best = _scaled(parameter, found.values[parameter])
@@ -130,7 +130,7 @@ def _maximise(
 
 
 def _descend(badness: Callable[[np.ndarray], float], start: np.ndarray, bounds: Any) -> Any:
-    """The lowest place near a start. With so few parameters no gradient is needed."""
+    """The local minimum near a start, without gradients: there are only few parameters."""
     tolerance = {'xatol': 1e-4, 'fatol': 1e-6, 'maxiter': 1000, 'adaptive': False}
     return minimize(badness, start, method='Nelder-Mead', bounds=bounds, options=tolerance)
 
@@ -140,7 +140,7 @@ def _grid(names: list[str]) -> list[tuple[float, ...]]:
 
 
 def _scaled(name: str, value: float) -> float:
-    """A parameter on the whole line: log, and log odds for a probability."""
+    """A parameter on an unbounded scale: its logarithm, or the log odds of a probability."""
     return math.log(value / (1 - value)) if name == 'lapse' else math.log(value)
 
 

@@ -19,7 +19,7 @@ from blocks_planning.people.families import family_names
 
 RANDOM = 'random'
 BOUNDS = {'lambda': (1e-7, 1.0), 'temperature': (1e-2, 1e3), 'lapse': (1e-6, 1 - 1e-6)}
-"""Where each parameter is looked for: lambda [cells / state], temperature [cells; without
+"""Search range of each parameter: lambda [cells / state], temperature [cells; without
 progress: thousand states], lapse [probability]."""
 _STATES = 1000.0
 HORIZONS = (1, 2, 3)
@@ -30,13 +30,14 @@ class Model:
     """A model of choice.
 
     Attributes:
-        regions: name of the region family; '' for uniform choice of what can be drawn.
-        horizon: subgoals looked ahead, 1 to 3.
+        regions: name of the region family; '' for a uniform choice among all regions that can be
+            drawn.
+        horizon: number of subgoals to look ahead, 1 to 3.
         cost: whether solving costs count.
         progress: whether the cells filled count.
 
     Raises:
-        ConfigurationError: if nothing is weighed, or the horizon is out of its range.
+        ConfigurationError: if neither cost nor progress counts, or the horizon is out of range.
     """
 
     regions: str
@@ -52,7 +53,7 @@ class Model:
 
     @property
     def name(self) -> str:
-        """Such as 'rows', 'rectangles-2', 'rows-no-cost' or 'random'."""
+        """The name, such as 'rows', 'rectangles-2', 'rows-no-cost' or 'random'."""
         if not self.regions:
             return RANDOM
         ahead = '' if self.horizon == 1 else f'-{self.horizon}'
@@ -69,7 +70,7 @@ class Model:
         return (*weighed, 'temperature', 'lapse')
 
     def weights(self, values: Mapping[str, float]) -> tuple[float, float]:
-        """What a cell and a state add to V / temperature."""
+        """The contributions of a cell and of a state to V / temperature."""
         temperature = values['temperature']
         if not self.progress:
             return 0.0, -1 / (_STATES * temperature)
@@ -107,7 +108,7 @@ def log_likelihoods(choices: ChoiceSet, model: Model, values: Mapping[str, float
     """The log probability of each choice under a model: float64 (choices,) [nats].
 
     Args:
-        choices: made with the options of the model's family and horizon.
+        choices: with the options of the model's family and horizon.
         model: the model.
         values: of its parameters.
     """

@@ -1,8 +1,8 @@
-"""What can be chosen in a state, and what each option is worth: the interface for planners.
+"""The options of a state and their values: the interface for planners.
 
 A model of choice needs, for every option, the cells that it names and the sequences of subgoals
 that begin with it, each with its cells r and its cost c. :class:`OneAhead` gives them for a region
-family one subgoal ahead. A planner that looks further plugs in as another :class:`OptionMaker`.
+family one subgoal ahead. A planner that looks further ahead needs another :class:`OptionMaker`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from blocks_planning.search.searches import make_search
 from blocks_planning.search.solve import solve
 
 QUICK_BUDGET = 2_000
-"""Budget of the first try at a region [states]."""
+"""Budget of the first attempt to solve a region [states]."""
 
 
 class Sequence(NamedTuple):
@@ -39,7 +39,7 @@ class Option:
 
     Attributes:
         cells: that it adds.
-        sequences: that begin with it and can be solved; none: the region cannot be built.
+        sequences: solvable ones that begin with it; empty if the region cannot be built.
         placements: that fill it.
     """
 
@@ -60,7 +60,7 @@ class Solves:
     """Answers of solves, shared by all models and sessions."""
 
     def __init__(self) -> None:
-        """Nothing is known yet."""
+        """Start without answers."""
         self._known: dict[tuple[Task, Mask, Mask, Asking], SolveResult | None] = {}
 
     def __len__(self) -> int:
@@ -69,9 +69,9 @@ class Solves:
     def solved(self, task: Task, built: Mask, region: Mask, asking: Asking) -> SolveResult | None:
         """The solve of a region from a state; None if it is not solved.
 
-        A solve that succeeds within a small budget is the same within a larger one. One that does
-        not is first held against the proof that nothing fills the region, which is cheaper than
-        to use up the budget.
+        A solve that succeeds within a small budget has the same result within a larger one. If it
+        fails, the exact search first checks whether the region is unsolvable, which is cheaper
+        than using up the budget.
         """
         key = task, built, region, asking
         if key not in self._known:
@@ -100,7 +100,7 @@ class OneAhead:
     """The regions of a family, one subgoal ahead: the paper's scoping planner."""
 
     def __init__(self, regions: str, solves: Solves) -> None:
-        """Look at the regions of a family.
+        """Use the regions of a family.
 
         Args:
             regions: name of the family.
@@ -131,7 +131,7 @@ class OneAhead:
 
 
 def drawable(task: Task, built: Mask) -> int:
-    """How many different regions can be drawn in a state, for a lapse to hit any of them.
+    """Number of different regions that can be drawn in a state, any of which a lapse can choose.
 
     One for every set of :func:`drawn_by_rectangle`, and one more for all other shapes together.
     """

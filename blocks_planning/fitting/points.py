@@ -1,4 +1,4 @@
-"""Choices of a region, taken from trial records: the one place here that knows their form."""
+"""Choices of regions, extracted from trial records; only this module knows the form of records."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from blocks_planning.trials.record import TrialRecord
 
 
 class Asking(NamedTuple):
-    """How the regions of a trial are solved; what a candidate costs follows from it."""
+    """How the regions of a trial are solved; this determines the cost of a candidate."""
 
     search: Search
     seed: int
@@ -25,12 +25,12 @@ class ChoicePoint(NamedTuple):
     """A state, and the region that was chosen in it.
 
     Attributes:
-        session: who chose: a participant's code, or 'seed N' for a planner.
+        session: code of the participant, or 'seed N' for a planner.
         tower: name of the silhouette.
-        task: what is rebuilt.
+        task: the task.
         built: the state.
         cells: the cells that the chosen region adds.
-        asking: how regions are solved there.
+        asking: how regions of the trial are solved.
     """
 
     session: str
@@ -44,8 +44,8 @@ class ChoicePoint(NamedTuple):
 def points_of(records: Iterable[TrialRecord]) -> list[ChoicePoint]:
     """Every choice in some records, in order.
 
-    A person's choices are all regions that were to be built, those that could not be built among
-    them; regions withdrawn and giving up are no choices. A planner's choices are the first
+    A person's choices are all regions that were proposed to be built, including those that could
+    not be built; withdrawn regions and giving up are not choices. A planner's choices are the first
     subgoals of its decisions.
     """
     return [point for record in records for point in _points(record)]

@@ -1,4 +1,4 @@
-"""Whether parameters and models can be found again from choices that were drawn from them."""
+"""Recovery of parameters and models from simulated choices."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from blocks_planning.fitting.points import ChoicePoint
 from blocks_planning.fitting.simulation import Chooser, choose_again
 
 RANGES = {'lambda': (5e-4, 5e-3), 'temperature': (0.5, 2.0), 'lapse': (0.01, 0.1)}
-"""From where the parameters of simulated participants are drawn, uniformly in their logarithm."""
+"""Ranges of the parameters of simulated participants, drawn uniformly in their logarithm."""
 Report = Callable[[int, int], None]
 
 
@@ -34,14 +34,14 @@ def recover_parameters(
     seed: int,
     report: Report | None = None,
 ) -> list[dict[str, Any]]:
-    """Draw parameters for each session, choose by them in its states, and fit what was chosen.
+    """Draw parameters for each session, simulate choices in its states, and fit these choices.
 
     Args:
-        sessions: the states of each simulated participant; what was chosen there plays no part.
-        model: that chooses, and is fitted.
+        sessions: the states of each simulated participant; the original choices have no effect.
+        model: that chooses and is fitted.
         makers: of options.
         seed: of all draws.
-        report: is called after each session.
+        report: called after each session.
 
     Returns:
         A row for each session and parameter: ``session``, ``choices``, ``parameter``, ``true``,
@@ -76,7 +76,7 @@ def recover_models(
     seed: int,
     report: Report | None = None,
 ) -> list[dict[str, Any]]:
-    """Choose by each model in the states of each session, and see which model fits best (BIC).
+    """Simulate choices of each model in the states of each session, and find the best model (BIC).
 
     Arguments as for :func:`recover_parameters`.
 
@@ -113,7 +113,7 @@ def median_errors(rows: Sequence[Mapping[str, Any]]) -> dict[str, float]:
 
 
 def win_rates(rows: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, float]]:
-    """How often each model wins where each is true, of :func:`recover_models`."""
+    """How often each model fits best for each true model, from :func:`recover_models`."""
     names = list(dict.fromkeys(row['model'] for row in rows))
     found = {}
     for true in names:

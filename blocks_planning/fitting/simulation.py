@@ -14,7 +14,7 @@ from blocks_planning.fitting.options import Option, OptionMaker, drawn_by_rectan
 from blocks_planning.fitting.points import Asking, ChoicePoint
 
 MOST_CHOICES = 20
-"""Most choices in a simulated trial; regions that cannot be built leave the state as it is."""
+"""Most choices in a simulated trial; regions that cannot be built do not change the state."""
 
 
 class Chooser:
@@ -27,7 +27,7 @@ class Chooser:
         maker: OptionMaker,
         rng: np.random.Generator,
     ) -> None:
-        """Choose by a model.
+        """Choose according to a model.
 
         Args:
             model: the model.
@@ -61,7 +61,7 @@ class Chooser:
         return bool(self._options(point)[0])
 
     def _options(self, point: ChoicePoint) -> tuple[list[Option], np.ndarray]:
-        """The options with a value, and how likely each is without a lapse."""
+        """The options with a value, and their probabilities without a lapse."""
         key = point.task, point.built, point.asking
         if key not in self._chances:
             made = self._maker.options(*key)
@@ -78,7 +78,7 @@ class Chooser:
 
 
 def choose_again(points: Sequence[ChoicePoint], chooser: Chooser) -> list[ChoicePoint]:
-    """Other choices in the same states."""
+    """New choices in the same states."""
     return [point._replace(cells=chooser.choose(point)[0]) for point in points]
 
 
@@ -87,7 +87,7 @@ def roll_out(
 ) -> list[ChoicePoint]:
     """The choices of a simulated participant who rebuilds some towers, by name.
 
-    A chosen region that can be built is built, by the plan of its solve. A trial ends when the
+    A chosen region that can be built is built according to its plan. A trial ends when the
     silhouette is complete, no option can be built, or ``MOST_CHOICES`` were made.
     """
     points = []

@@ -36,10 +36,10 @@ def choice_rows(points: Sequence[ChoicePoint]) -> list[dict[str, Any]]:
 
 
 def write_table(folder: Path, name: str, rows: Sequence[dict[str, Any]]) -> Path:
-    """Write NAME.csv; what is not known is an empty field.
+    """Write NAME.csv; unknown values are empty fields.
 
     Args:
-        folder: is made if it is not there.
+        folder: created if it does not exist.
         name: of a table in :data:`COLUMNS`.
         rows: dicts with those columns.
     """

@@ -1,1 +1,1 @@
-"""What people built and marked, and measures of it that apply to planners too."""
+"""Human building and marking data, and measures that also apply to planners."""

@@ -1,4 +1,4 @@
-"""Reading the data of people that ship with the package (stimuli/people/README.md)."""
+"""Reads the human data that ship with the package (stimuli/people/README.md)."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ PARTS = 'perceptual_chunks.csv'
 
 
 class Build(NamedTuple):
-    """A tower as somebody built it, a person or a planner.
+    """A tower that a person or a planner built.
 
     Attributes:
-        builder: who built; builds of one builder are resampled together.
+        builder: name of the person or planner; builds of one builder are resampled together.
         tower: name of the silhouette in its set.
         placements: in the order of building. A person's may lie partly or wholly off the board.
     """
@@ -37,7 +37,7 @@ class Build(NamedTuple):
 
 
 class Marking(NamedTuple):
-    """The parts that a person marked in a silhouette, by rising number of the part."""
+    """The parts that a person marked in a silhouette, ordered by number."""
 
     marker: str
     pilot: str
@@ -69,13 +69,13 @@ def tasks() -> dict[str, Task]:
 
 
 def read_builds(path: Path | None = None) -> list[Build]:
-    """What people built, trial by trial.
+    """The builds of people, trial by trial.
 
     Args:
-        path: of a file with the columns of the installed one; None: that one.
+        path: of a file with the same columns as the installed one; None: the installed one.
 
     Raises:
-        InvalidInput: if the file cannot be read, or a value is not what its column holds.
+        InvalidInput: if the file cannot be read, or a value does not suit its column.
     """
     path = path or installed_file(SEQUENCES)
     rows = _rows(path, ('participant', 'trial', 'tower', 'width', 'height', 'column', 'row'))
@@ -109,10 +109,10 @@ def _rows(path: Path, columns: tuple[str, ...]) -> Iterator[tuple[str, dict[str,
                 place = f'{path}, line {reader.line_num}'
                 for column in columns:
                     if row.get(column) is None:
-                        raise InvalidInput(f'{place}: has no column {column!r}')
+                        raise InvalidInput(f'{place}: missing column {column!r}')
                 if row['tower'] not in tasks():
                     raise InvalidInput(
-                        f'{place}: there is no tower {row["tower"]!r} in {SET}; '
+                        f'{place}: unknown tower {row["tower"]!r} of {SET}; '
                         f'expected one of {", ".join(tasks())}'
                     )
                 yield place, row
@@ -144,7 +144,7 @@ def _parts(text: str, tower: str, place: str) -> tuple[Mask, ...]:
     lines = text.split('/')
     if [len(line) for line in lines] != [board.width] * board.height:
         raise InvalidInput(
-            f'{place}: expected {board.height} rows of {board.width} digits divided by /, '
+            f'{place}: expected {board.height} rows of {board.width} digits separated by /, '
             f'got {text!r}'
         )
     digits = sorted(set(text) - {'0', '/'})

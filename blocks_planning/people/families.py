@@ -1,4 +1,4 @@
-"""Region families by name, as this package measures with them: the cells that a region adds."""
+"""Region families by name, as functions that list the cells that each region adds."""
 
 from __future__ import annotations
 
@@ -28,5 +28,5 @@ def _added(family: RegionFamily, task: Task, built: Mask) -> list[Mask]:
 
 
 def family_names() -> tuple[str, ...]:
-    """The families that can be measured with."""
+    """The families that measures can use."""
     return tuple(REGIONS)

@@ -26,7 +26,7 @@ would describe every complete build."""
 
 
 class Count(NamedTuple):
-    """How often something was so, of how many times it could have been."""
+    """Number of hits, and number of cases."""
 
     hits: int
     chances: int
@@ -51,7 +51,7 @@ def cells_inside(task: Task, placed: Placed) -> Mask | None:
 
 
 def inside(task: Task, placements: Placements) -> Count:
-    """Placements wholly inside the silhouette, of all."""
+    """Placements wholly inside the silhouette, of all placements."""
     hits = sum(cells_inside(task, placed) is not None for placed in placements)
     return Count(hits, len(placements))
 
@@ -68,7 +68,7 @@ def perfect(task: Task, placements: Placements) -> Count:
 
 
 def upwards(_: Task, placements: Placements) -> Count:
-    """Placements whose lowest row is at or above that of the one before, of all but the first."""
+    """Placements whose lowest row is at or above the previous one's, of all except the first."""
     pairs = list(pairwise(placements))
     return Count(sum(later.row >= earlier.row for earlier, later in pairs), len(pairs))
 
@@ -111,15 +111,15 @@ MEASURES: dict[str, Callable[[Task, Placements], Count]] = {
 
 
 class Describer:
-    """How far a region family describes the order of building.
+    """Measures how well a region family describes the order of building.
 
     An order is described where successive placements, at least two, fill exactly one region of
-    the family in the state in which the first of them was placed. One block alone says nothing
-    about an order, and neither does the whole silhouette; see ``LARGEST_SHARE``.
+    the family in the state in which the first of them was placed. A single block contains no
+    information about an order, nor does the whole silhouette; see ``LARGEST_SHARE``.
     """
 
     def __init__(self, family: Family) -> None:
-        """Describe by the regions of a family."""
+        """Use the regions of a family."""
         self._regions = cache(lambda task, built: self._proper(task, family(task, built)))
 
     def _proper(self, task: Task, regions: list[Mask]) -> frozenset[Mask]:
@@ -127,7 +127,7 @@ class Describer:
         return frozenset(cells for cells in regions if area(cells) <= most)
 
     def described(self, task: Task, placements: Placements) -> Count:
-        """Placements in such runs, as many as can be at once, of all placements."""
+        """Placements in such runs (chosen to cover as many as possible), of all placements."""
         best = [0] * (len(placements) + 1)
         parts = [cells_inside(task, placed) for placed in placements]
         states = list(_states(parts))
@@ -140,7 +140,7 @@ class Describer:
     def _ends(
         self, task: Task, parts: list[Mask | None], begin: int, built: Mask
     ) -> Iterator[int]:
-        """Where the runs end that begin at a placement: the index after their last one."""
+        """The ends of the runs that begin at a placement: the index after their last placement."""
         filled = 0
         for number, part in enumerate(parts[begin:], start=begin):
             if part is None or part & (built | filled):
@@ -158,9 +158,9 @@ def _states(parts: list[Mask | None]) -> Iterator[Mask]:
 
 
 def shuffled(placements: Placements, source: random.Random) -> Placements:
-    """The same blocks in another order in which they could be dropped: chance for a measure.
+    """The same blocks in a random order in which they could be dropped: the chance level.
 
-    Again and again one is drawn, uniformly, of the blocks that have no block left below them.
+    Repeatedly draws uniformly among the blocks that have no remaining block below them.
     """
     left = list(placements)
     order = []

@@ -1,4 +1,4 @@
-"""The parts of a silhouette that people mark, held against the regions of a family."""
+"""Comparison of the parts that people mark with the regions of a family."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def neighbours(board: Board, mask: Mask) -> Mask:
 
 
 def pieces(board: Board, mask: Mask) -> Iterator[Mask]:
-    """The connected pieces of a mask: cells hang together over their edges."""
+    """The connected pieces of a mask; cells are connected by their edges."""
     while mask:
         piece, grown = 0, mask & -mask
         while grown != piece:
@@ -30,21 +30,21 @@ def pieces(board: Board, mask: Mask) -> Iterator[Mask]:
 
 
 def is_region(task: Task, part: Mask, family: Family) -> bool:
-    """Whether a part is what a region of the family adds when all target cells below are built.
+    """Whether a region of the family adds exactly a part when all target cells below it are built.
 
-    Below are the rows under the lowest one of the part.
+    Below means the rows under the lowest row of the part.
     """
     lowest = min(row for _, row in task.board.cells(part))
     return part in family(task, task.rows(lowest))
 
 
 def grown_part(task: Task, cells: int, source: random.Random) -> Mask:
-    """A connected part of a silhouette, grown cell by cell from a random one: chance for a part.
+    """A connected part of a silhouette, grown cell by cell from a random cell: the chance level.
 
     Args:
         task: the silhouette; each of its pieces must have ``cells`` cells at least once tried.
         cells: size of the part [cells], 1 or more.
-        source: of the draws.
+        source: random generator.
     """
     while True:
         part = _one(task.board, task.silhouette, source)

@@ -1,4 +1,4 @@
-"""Set points of the arm: axes that speed up and slow down within bounds, and the gripper."""
+"""Set points of the arm: axes with bounded speed and acceleration, and the gripper."""
 
 from __future__ import annotations
 
@@ -8,34 +8,34 @@ from blocks_planning.robot.scene import DAMPING, STIFFNESS, TIMESTEP
 from blocks_planning.robot.sizes import Sizes
 
 ACCELERATION = 2.0
-"""Of an axis on its way [m/s2]."""
+"""Acceleration of a moving axis [m/s2]."""
 BRAKING = 5.0
-"""Of an axis that has to stop at once [m/s2]."""
+"""Deceleration of an axis that must stop immediately [m/s2]."""
 FAST = 0.5
-"""Of an axis with nothing in its way [m/s]: it can stop in 0.1 s."""
+"""Speed of an axis in free space [m/s]: it can stop in 0.1 s."""
 SLOW, GENTLE = 0.02, 0.1
-"""Speed [m/s] and acceleration [m/s2] towards a contact: the motor feels the contact and nothing
-else."""
+"""Speed [m/s] and acceleration [m/s2] towards a contact: so low that the motor senses only the
+contact."""
 FINGER_SPEED = 0.12
 """[m/s]"""
 
 
 @dataclass
 class Axis:
-    """Where the set point of an axis is [m], and how fast it moves [m/s]."""
+    """The position [m] and speed [m/s] of the set point of an axis."""
 
     position: float = 0.0
     speed: float = 0.0
 
     @property
     def command(self) -> float:
-        """For the servo, ahead of the set point by what its damping makes it lag [m]."""
+        """The command of the servo [m]: ahead of the set point, against the lag of its damping."""
         return self.position + self.speed * DAMPING / STIFFNESS
 
     def towards(
         self, target: float, fastest: float = FAST, acceleration: float = ACCELERATION
     ) -> None:
-        """Move on for one time step."""
+        """Move for one time step."""
         distance = target - self.position
         sign = 1.0 if distance > 0 else -1.0
         wanted = sign * min(fastest, (2 * acceleration * abs(distance)) ** 0.5)
@@ -57,7 +57,7 @@ class Axis:
 
 @dataclass
 class Arm:
-    """The set points: tool position, and how far the fingers are closed [m]."""
+    """The set points: tool position, and closing distance of the fingers [m]."""
 
     x: Axis = field(default_factory=Axis)
     z: Axis = field(default_factory=Axis)
@@ -65,7 +65,7 @@ class Arm:
 
     @property
     def commands(self) -> tuple[float, float, float, float]:
-        """For the servos of the joints of the scene, in their order."""
+        """The commands of the servos, in the order of the joints of the scene."""
         return self.x.command, self.z.command, self.grip, self.grip
 
     def grip_towards(self, target: float) -> None:
@@ -74,13 +74,13 @@ class Arm:
         self.grip += max(-most, min(most, target - self.grip))
 
     def stop(self) -> None:
-        """Slow both axes down for one time step; the fingers stay."""
+        """Slow down both axes for one time step; the fingers do not move."""
         self.x.stop()
         self.z.stop()
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether no axis is on its way."""
+        """Whether no axis is moving."""
         return self.x.speed == 0 and self.z.speed == 0
 
 
@@ -90,5 +90,5 @@ def closed(sizes: Sizes) -> float:
 
 
 def face(sizes: Sizes) -> float:
-    """Where the fingers touch a block."""
+    """The closing distance at which the fingers touch a block."""
     return sizes.open_gap + sizes.gap / 2

@@ -1,4 +1,4 @@
-"""What the arm does next: one act is one order, carried out phase by phase."""
+"""The behaviour of the arm: one act carries out one order, phase by phase."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ class Behaviour:
     """Moves the arm, one time step after the other.
 
     Attributes:
-        memory: where the act is.
+        memory: the state of the act.
     """
 
     def __init__(self, simulation: Simulation, feeder: Feeder, slack: float) -> None:
         """An arm at rest beside the board.
 
         Args:
-            simulation: what it moves in.
-            feeder: presents what is ordered.
-            slack: how far the height of the tower may differ from what was seen [m].
+            simulation: the simulation.
+            feeder: presents the ordered block.
+            slack: tolerance of the perceived height of the tower [m].
         """
         self.simulation = simulation
         self.sizes = simulation.sizes
@@ -52,12 +52,12 @@ class Behaviour:
     # --- orders -----------------------------------------------------------------------------
 
     def begin(self, placement: Placement, row: int | None, top: float) -> None:
-        """Begin an act; what is still held from an earlier one is brought back first.
+        """Begin an act; a block that is still held from an earlier one is brought back first.
 
         Args:
-            placement: what is ordered.
-            row: on which it is expected to come to rest; None: nowhere on the board.
-            top: highest point of everything that stands [m].
+            placement: the order.
+            row: row on which the block is expected to come to rest; None: nowhere on the board.
+            top: highest point of the tower [m].
         """
         old, now, sizes = self.memory, self.simulation.time, self.sizes
         is_holding = self.is_holding
@@ -75,21 +75,21 @@ class Behaviour:
             memory.phase = Phase.BRING_BACK if is_holding else Phase.RETREAT
 
     def cancel(self) -> None:
-        """Stop the arm; what it holds it goes on holding."""
+        """Stop the arm; it keeps holding its block."""
         self.memory.stopping = self.is_busy
 
     @property
     def is_busy(self) -> bool:
-        """Whether an act goes on."""
+        """Whether an act is in progress."""
         return self.memory.phase is not Phase.IDLE
 
     @property
     def is_holding(self) -> bool:
-        """Whether there is something between closed fingers."""
+        """Whether the closed fingers hold something."""
         return moving.is_holding(self.simulation, self.memory.arm)
 
     def step(self) -> Report | None:
-        """Let the next time step pass; return how the act ended if it has."""
+        """Simulate one time step; return the report of the act if it has ended."""
         memory, report = self.memory, None
         if memory.stopping:
             report = self._stop()
@@ -101,7 +101,7 @@ class Behaviour:
 
     @property
     def progress(self) -> Progress:
-        """Where the act is."""
+        """The progress of the act."""
         phase = self.memory.phase
         done = ACT.index(phase) / len(ACT) if phase in ACT else 0.0
         return Progress(phase, done, self.simulation.time)
@@ -117,7 +117,7 @@ class Behaviour:
         if following is not None:
             self._enter(following)
         elif moving.is_blocked(self.simulation, memory.arm):
-            self._fail(Reason.COLLISION, 'the arm was pushed off its way')
+            self._fail(Reason.COLLISION, 'the arm was blocked')
         elif self.simulation.time - memory.entered > BOUNDS_S[phase]:
             if phase is Phase.SETTLE:
                 self._enter(Phase.IDLE)
@@ -130,7 +130,7 @@ class Behaviour:
         self.memory.entered, self.memory.at_rest = self.simulation.time, 0.0
 
     def _fail(self, reason: Reason, text: str) -> None:
-        """Note the first failure; then bring back what is held, or let go and move up."""
+        """Store the first failure; then bring back the held block, or open and move up."""
         memory, phase = self.memory, self.memory.phase
         if memory.reason is None:
             memory.failed, memory.reason, memory.text = phase, reason, f'{phase.value}: {text}'
@@ -165,7 +165,7 @@ class Behaviour:
             memory.settled,
         )
 
-    # --- the phases: each gives the next one, or None to go on ------------------------------
+    # --- the phases: each returns the next one, or None to continue ------------------------------
 
     def _approach(self) -> Phase | None:
         memory = self.memory
@@ -182,7 +182,7 @@ class Behaviour:
         ):
             return None
         if not self.is_holding:
-            self._fail(Reason.NOTHING_GRASPED, 'there was nothing between the fingers')
+            self._fail(Reason.NOTHING_GRASPED, 'the fingers hold nothing')
             return None
         return Phase.LIFT
 
@@ -208,9 +208,9 @@ class Behaviour:
                 return Phase.RELEASE
             case Descent.TOO_HIGH:
                 excess = (float(simulation.joints[1]) - memory.landing) / self.sizes.cell
-                self._fail(Reason.COLLISION, f'it met something {excess:.1f} cells too high')
+                self._fail(Reason.COLLISION, f'contact {excess:.1f} cells too high')
             case Descent.NOTHING_BELOW:
-                self._fail(Reason.OUT_OF_REACH, 'there was nothing to stand on')
+                self._fail(Reason.OUT_OF_REACH, 'there was no support')
         return None
 
     def _release(self) -> Phase | None:
@@ -233,10 +233,10 @@ class Behaviour:
         return Phase.IDLE
 
     def _bring_back(self) -> Phase | None:
-        """Carry a block back; then go on with the order, or retreat if it has failed."""
+        """Carry a block back; then continue with the order, or retreat if it has failed."""
         memory = self.memory
         if self.is_holding:
-            # Let it fall a little rather than push it into the table.
+            # Drop it from a small height, so that it is not pushed into the table.
             low = self._held_height - self.sizes.below_top + 0.1 * self.sizes.cell
             if not self._is_above_feeder() or not self._go(z=low):
                 return None
@@ -248,7 +248,7 @@ class Behaviour:
         memory.number = self._feeder.present(self._block)
         return Phase.APPROACH
 
-    # --- what phases have in common ---------------------------------------------------------
+    # --- common parts of the phases ----------------------------------------------------------
 
     @property
     def _block(self) -> Block:
@@ -257,7 +257,7 @@ class Behaviour:
 
     @property
     def _held_height(self) -> float:
-        """Of the block that was presented last [m]."""
+        """Height of the block that was presented last [m]."""
         return self.simulation.body(self.memory.number).block.height * self.sizes.cell
 
     @property
@@ -275,16 +275,16 @@ class Behaviour:
         return self.sizes.centre(column, self._block.width)
 
     def _go(self, x: float | None = None, z: float | None = None, **pace: float) -> bool:
-        """Move on towards a target; whether the arm is there."""
+        """Move towards a target; return whether the arm is there."""
         return moving.go(self.simulation, self.memory.arm, x, z, **pace)
 
     def _is_above_feeder(self) -> bool:
-        """Move up, then over to the feeder; whether the arm is above it, or lower there."""
+        """Move up, then over to the feeder; return whether the arm is above it, or lower."""
         arm, x = self.memory.arm, self._feeder_x
         return moving.go_over(self.simulation, arm, x, self.memory.travel)
 
     def _has_dropped(self) -> bool:
-        """Whether nothing is held any more; the act has failed then."""
+        """Whether the block was lost; then the act has failed."""
         if self.is_holding:
             return False
         self._fail(Reason.DROPPED, 'the block slipped out of the fingers')

@@ -1,7 +1,7 @@
-"""Blocks as the front camera sees them: its picture is cut up by colour.
+"""Blocks in the picture of the front camera, which is segmented by colour.
 
-The camera looks along y without perspective and shows the board and nothing else. A block that
-lies in front of the board hides what is behind it, and counts as a part of the board.
+The camera looks along y without perspective and shows only the board. A block in front of the board
+hides the cells behind it, and counts as a part of the board.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from blocks_planning.robot.scene import FRONT_CAMERA, PIXELS_PER_CELL, Body
 from blocks_planning.robot.simulation import Simulation
 
 MOST_OFF = 20.0
-"""How far a pixel may be from the colour of a block, in levels; the nearest two are 21 apart."""
+"""Tolerance of the colour of a pixel [levels]; the two nearest block colours differ by 21."""
 
 
 class Camera:
     """Takes pictures of the board and finds blocks in them.
 
     Raises:
-        ConfigurationError: if nothing can be drawn on this machine.
+        ConfigurationError: if this machine cannot render.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -33,7 +33,7 @@ class Camera:
         self._board = simulation.sizes.board
 
     def picture(self) -> Pixels:
-        """What the camera sees now."""
+        """The current picture of the camera."""
         side = PIXELS_PER_CELL
         return self._painter.paint(
             FRONT_CAMERA, side * self._board.width, side * self._board.height
@@ -54,7 +54,7 @@ def coverages(pixels: Pixels, numbers: Sequence[int]) -> list[Coverage]:
 
     Args:
         pixels: of the board, ``PIXELS_PER_CELL`` for each cell.
-        numbers: of the blocks that may be in it.
+        numbers: of the blocks to look for.
     """
     if not numbers:
         return []
@@ -65,7 +65,7 @@ def coverages(pixels: Pixels, numbers: Sequence[int]) -> list[Coverage]:
 
 
 def _coverage(shown: np.ndarray[tuple[int, int], np.dtype[np.bool_]]) -> Coverage:
-    """Shares of the cells in a picture of truth values, top row first."""
+    """Shares of the cells in a boolean picture, top row first."""
     side = PIXELS_PER_CELL
     rows, columns = shown.shape[0] // side, shown.shape[1] // side
     shares = shown.reshape(rows, side, columns, side).mean(axis=(1, 3))

@@ -1,7 +1,7 @@
-"""The colours by which the camera tells blocks apart.
+"""The colours by which the camera distinguishes blocks.
 
-Each block has a colour of its own, and all of them are saturated: table, arm and sky are grey, so
-a grey pixel is never taken for a block.
+Each block has its own colour, and all of them are saturated. Table, arm and sky are grey, so a grey
+pixel is never mistaken for a block.
 """
 
 from __future__ import annotations
@@ -11,13 +11,13 @@ from functools import lru_cache
 
 HUES = 16
 SHADES = ((0.95, 0.95), (0.95, 0.6), (0.45, 1.0), (0.5, 0.6))
-"""Saturation and brightness. 64 colours in all, then they begin again."""
+"""Saturation and brightness; with the hues 64 colours, then they repeat."""
 COUNT = HUES * len(SHADES)
 
 
 @lru_cache(maxsize=COUNT)
 def _nth(index: int) -> tuple[int, int, int]:
-    # 7 and 16 share no factor: neighbours in number are far apart in hue.
+    # 7 and 16 have no common factor, so successive numbers have very different hues.
     hue = (7 * index) % HUES / HUES
     saturation, brightness = SHADES[index // HUES]
     red, green, blue = colorsys.hsv_to_rgb(hue, saturation, brightness)

@@ -1,4 +1,4 @@
-"""How much of each cell a block covers: from its pose, or from the pixels that show it."""
+"""The share of each cell that a block covers, from its pose or from pixels."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from blocks_planning.board.geometry import Cell
 
 Point: TypeAlias = tuple[float, float]
 Coverage: TypeAlias = dict[Cell, float]
-"""Share of a cell that is covered, 0 to 1; cells without a share are missing, cells beyond the
-board may be there."""
+"""Share of a cell that is covered, 0 to 1; cells without a share are missing, cells outside
+the board can occur."""
 
 
 @dataclass(frozen=True)
 class Sighting:
-    """A block that was seen.
+    """A perceived block.
 
     Attributes:
         number: of the block.
         block: its size when it stands upright [cells].
-        coverage: of cells of the board and around it.
-        tilt: how far its sides are from upright or level [degrees]; None: not known.
-        is_off_plane: it is not in the plane of the board, or lies on its face.
+        coverage: of cells on and around the board.
+        tilt: deviation of its sides from vertical or horizontal [degrees]; None: unknown.
+        is_off_plane: whether it is outside the plane of the board, or lies on its face.
     """
 
     number: int

@@ -1,4 +1,4 @@
-"""Building a whole tower in one process: order after order, each followed by a look."""
+"""Building a whole tower in one process: orders, each followed by a perception."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from blocks_planning.robot.robot import Robot
 
 @dataclass(frozen=True)
 class Act:
-    """An order, how it ended, and what was seen then.
+    """An order, its report, and the perception after it.
 
     Attributes:
         report: of the arm.
-        seen: the state of the board.
-        change: between the state before and this one.
-        expected: where the block should have come to rest, going by the state before; None:
+        seen: the perceived state of the board.
+        change: from the previous state to this one.
+        expected: where the block should have come to rest in the previous state; None:
             nowhere.
     """
 
@@ -32,14 +32,14 @@ class Act:
 
     @property
     def is_surprise(self) -> bool:
-        """Whether anything else happened than what was ordered."""
+        """Whether the result differs from the order."""
         wanted = () if self.expected is None else (self.expected,)
         return self.change != Change(wanted, ())
 
 
 @dataclass(frozen=True)
 class Score:
-    """How well the filled cells match a silhouette, each number 0 to 1."""
+    """Agreement of the filled cells with a silhouette, each number 0 to 1."""
 
     recall: float
     precision: float
@@ -50,12 +50,12 @@ class Score:
 def carry_out(
     robot: Robot, placement: Placement, watch: Callable[[Progress], None] | None = None
 ) -> Act:
-    """Carry out one order and look at the board.
+    """Carry out one order and perceive the board.
 
     Args:
-        robot: is not busy.
-        placement: what to place.
-        watch: is shown the progress after every tick.
+        robot: must not be busy.
+        placement: the order.
+        watch: called with the progress after every step.
     """
     before = robot.seen
     expected = rules.drop(robot.board, before.built(robot.board), placement)
@@ -74,7 +74,7 @@ def carry_out_all(
     placements: Iterable[Placement],
     watch: Callable[[Progress], None] | None = None,
 ) -> list[Act]:
-    """Carry out orders one after the other, whatever becomes of them."""
+    """Carry out orders one after the other, regardless of failures."""
     return [carry_out(robot, placement, watch) for placement in placements]
 
 

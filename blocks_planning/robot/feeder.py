@@ -1,4 +1,4 @@
-"""The feeder: stands the ordered block beside the board, and takes away what was not placed."""
+"""The feeder: presents the ordered block beside the board, and removes unplaced blocks."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from blocks_planning.robot.simulation import Simulation
 
 
 class Feeder:
-    """Presents blocks in a simulation; ``seed`` is that of where they stand exactly."""
+    """Presents blocks in a simulation; ``seed`` determines their exact positions."""
 
     def __init__(self, simulation: Simulation, seed: int) -> None:
-        """Stand beside the board."""
+        """Create the feeder beside the board."""
         self._simulation = simulation
         self._seed = seed
 
     def present(self, block: Block) -> int:
-        """Clear the place and stand a block there; return its number."""
+        """Clear the feeder and present a block; return its number."""
         simulation = self._simulation
         simulation.remove(
             body.number for body in simulation.free if simulation.is_at_feeder(body.number)

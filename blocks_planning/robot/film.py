@@ -1,4 +1,4 @@
-"""Films of the arm and the tower, as GIF, with pictures of something else beside them."""
+"""Films of the arm and the tower, as GIF, optionally with other pictures beside them."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ with extra('figures'):
     from PIL import Image
 
 WIDTH, HEIGHT = 440, 400
-"""Of a frame without what stands beside it [pixels]."""
+"""Size of a frame without the pictures beside it [pixels]."""
 EVERY_S = 0.3
-"""Between two frames, in the time of the simulation [s]."""
+"""Time between two frames, in simulated time [s]."""
 FRAME_MS = 60
 LAST_FRAME_MS = 3000
 PAPER = 'white'
@@ -31,12 +31,12 @@ class Film:
     """Collects frames while a robot works.
 
     Raises:
-        ConfigurationError: if nothing can be drawn on this machine.
+        ConfigurationError: if this machine cannot render.
 
     Attributes:
-        robot: what is filmed.
-        every: between two frames, in the time of the simulation [s].
-        frames: pictures, each with the number of acts that were over.
+        robot: the robot.
+        every: time between two frames, in simulated time [s].
+        frames: pictures, each with the number of finished acts.
     """
 
     robot: Robot
@@ -49,7 +49,7 @@ class Film:
         self._acts = 0
 
     def watch(self, progress: Progress) -> None:
-        """Take a frame if it is time; to be called after every tick."""
+        """Take a frame if one is due; to be called after every step."""
         is_over = progress.report is not None
         self._acts += is_over
         if progress.time >= self._next or is_over:
@@ -62,8 +62,8 @@ class Film:
 
         Args:
             path: of the file.
-            beside: what to show on the right: the first before any act is over, the next after
-                the first, and so on; the last one stays.
+            beside: pictures on the right: the first one until the end of the first act, the next
+                until the end of the second, and so on; the last one stays.
 
         Raises:
             ConfigurationError: if the suffix is not .gif, nothing was filmed, or the file can't
@@ -71,7 +71,7 @@ class Film:
         """
         if path.suffix.lower() != '.gif' or not self.frames:
             raise ConfigurationError(
-                f'{path}: a film is a .gif of at least one frame, there are {len(self.frames)}'
+                f'{path}: a film must be a .gif with at least one frame, got {len(self.frames)} frames'
             )
         whole = [_join(frame, _at(beside, acts)) for frame, acts in self.frames]
         palette = whole[-1].quantize(COLOURS)
@@ -85,7 +85,7 @@ class Film:
             raise ConfigurationError(f'{path}: cannot be written: {error.strerror}') from None
 
     def close(self) -> None:
-        """Give back what was needed for drawing."""
+        """Release the rendering context."""
         self._painter.close()
 
 

@@ -1,7 +1,8 @@
-"""From what was seen to a state that can be: each block on cells, none in another, none in the air.
+"""Fits perceived blocks to a possible state: blocks on cells, without overlap, all supported.
 
-A block gets the rectangle of cells that it covers most. Where rectangles would overlap, or hang in
-the air, the next best one is taken; what fits nowhere is left out and makes the state impossible.
+A block gets the rectangle of cells that it covers most. If a rectangle would overlap another one,
+or have no support, the next best is used; a block without a possible rectangle is omitted, and the
+state is then impossible.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.robot.coverage import Coverage, Sighting
 
 LEAST_SHARE = 0.5
-"""Of a block's area in the cells that it is said to fill."""
+"""Least share of the area of a block that must be in its cells."""
 
 
 class Misfit(str, Enum):
-    """What is odd about a block."""
+    """Kinds of deviations from the grid."""
 
     DISPLACED = 'displaced'
     TILTED = 'tilted'
@@ -31,10 +32,10 @@ class Misfit(str, Enum):
 
 @dataclass(frozen=True)
 class Remark:
-    """Something that does not fit the grid.
+    """A deviation from the grid.
 
     Attributes:
-        kind: what it is.
+        kind: kind of the deviation.
         number: of the block.
         text: a sentence about it.
     """
@@ -46,11 +47,11 @@ class Remark:
 
 @dataclass(frozen=True)
 class Perceived:
-    """The state of the board as it was seen.
+    """The perceived state of the board.
 
     Attributes:
         blocks: every block on the board with its number, in the order of the numbers.
-        warnings: what does not fit the grid.
+        warnings: deviations from the grid.
     """
 
     blocks: tuple[tuple[int, Placed], ...] = ()
@@ -63,7 +64,7 @@ class Perceived:
 
     @property
     def is_possible(self) -> bool:
-        """Whether every block on the board found its cells."""
+        """Whether every block on the board has cells."""
         return all(warning.kind is not Misfit.IMPOSSIBLE for warning in self.warnings)
 
     def built(self, board: Board) -> Mask:
@@ -76,14 +77,14 @@ class Perceived:
 
 @dataclass(frozen=True)
 class Change:
-    """What differs between two states: blocks that moved are in both lists."""
+    """The differences between two states; blocks that moved are in both lists."""
 
     landed: tuple[Placed, ...]
     gone: tuple[Placed, ...]
 
 
 def change(before: Perceived, after: Perceived) -> Change:
-    """What landed and what is gone between two states, in the order of the numbers."""
+    """The blocks that landed and those that are gone, in the order of the numbers."""
     old, new = dict(before.blocks), dict(after.blocks)
     return Change(
         tuple(placed for number, placed in after.blocks if old.get(number) != placed),
@@ -92,24 +93,24 @@ def change(before: Perceived, after: Perceived) -> Change:
 
 
 def fit(board: Board, sightings: Iterable[Sighting], tolerance: float) -> Perceived:
-    """The state that fits best to what was seen.
+    """The possible state that fits the sightings best.
 
     Args:
         board: its size.
-        sightings: of every block but the one that the arm holds.
-        tolerance: share of a cell by which a block may miss its cells without a warning.
+        sightings: of every block except the one that the arm holds.
+        tolerance: share of a cell by which a block may deviate without a warning.
     """
     found: list[tuple[int, Placed]] = []
     warnings: list[Remark] = []
     built = 0
     for sighting in sorted(sightings, key=_height):
         if _is_off(board, sighting):
-            warnings.append(_remark(Misfit.OFF_BOARD, sighting, 'does not stand on the board'))
+            warnings.append(_remark(Misfit.OFF_BOARD, sighting, 'is not on the board'))
             continue
         choices = sorted(_choices(board, sighting), key=lambda choice: -choice[0])
         best = next((one for one in choices if _is_possible(board, built, one[1])), None)
         if best is None:
-            warnings.append(_remark(Misfit.IMPOSSIBLE, sighting, 'is where no block can be'))
+            warnings.append(_remark(Misfit.IMPOSSIBLE, sighting, 'is in an impossible place'))
             continue
         share, placed = best
         built |= rules.cells_of(board, placed)
@@ -125,7 +126,7 @@ def _remark(kind: Misfit, sighting: Sighting, text: str) -> Remark:
 
 
 def _height(sighting: Sighting) -> tuple[float, int]:
-    """Blocks further down come first."""
+    """Sort key: lower blocks come first."""
     total = sum(sighting.coverage.values())
     weighted = sum(row * share for (_, row), share in sighting.coverage.items())
     return (weighted / total if total else 0.0, sighting.number)
@@ -142,7 +143,7 @@ def _is_off(board: Board, sighting: Sighting) -> bool:
 
 
 def _choices(board: Board, sighting: Sighting) -> Iterator[tuple[float, Placed]]:
-    """Rectangles of cells that hold at least half of a block, upright or lying, by share."""
+    """Rectangles of cells with at least half of a block, upright or lying, ordered by share."""
     coverage = sighting.coverage
     columns = [column for column, _ in coverage]
     rows = [row for _, row in coverage]
@@ -177,7 +178,7 @@ def _is_inside(board: Board, placed: Placed) -> bool:
 
 
 def _is_possible(board: Board, built: Mask, placed: Placed) -> bool:
-    """Whether a block overlaps no other one and rests on one or on the ground."""
+    """Whether a block overlaps no other block and rests on one or on the ground."""
     cells = rules.cells_of(board, placed)
     if cells & built:
         return False
@@ -188,19 +189,22 @@ def _is_possible(board: Board, built: Mask, placed: Placed) -> bool:
 def _judge(
     sighting: Sighting, placed: Placed, tolerance: float, is_corrected: bool
 ) -> tuple[Misfit | None, str]:
-    """What is odd about a block that has got its cells; None if nothing is."""
+    """The deviation of a block that has cells; None if there is none."""
     inside = set(_cells(placed))
     missing = max(1 - sighting.coverage.get(cell, 0.0) for cell in inside)
     beyond = max((v for cell, v in sighting.coverage.items() if cell not in inside), default=0.0)
     where = f'column {placed.column}, row {placed.row}'
     if is_corrected:
-        return Misfit.CORRECTED, f'can only be in {where}'
+        return Misfit.CORRECTED, f'is only possible in {where}'
     if sighting.tilt is not None and sighting.tilt > MOST_TILT:
         return Misfit.TILTED, f'in {where} is tilted by {sighting.tilt:.0f} degrees'
     if max(missing, beyond) > tolerance:
-        return Misfit.DISPLACED, f'in {where} misses its cells by {max(missing, beyond):.2f} cell'
+        return (
+            Misfit.DISPLACED,
+            f'in {where} deviates from its cells by {max(missing, beyond):.2f} cell',
+        )
     return None, ''
 
 
 MOST_TILT = 3.0
-"""Of a block that counts as upright [degrees]."""
+"""Largest tilt of a block without a warning [degrees]."""

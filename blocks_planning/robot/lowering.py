@@ -1,6 +1,6 @@
-"""Lowering a block until it touches, and trying again where it meets an edge.
+"""Lowering a block until contact, with new attempts if it meets an edge.
 
-The only sense is the motor of the z axis: what a block stands on carries a part of its load.
+The only sensor is the motor of the z axis: after contact the support carries a part of the load.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from blocks_planning.robot.memory import Memory
 from blocks_planning.robot.simulation import Simulation
 
 TOUCH_N, TOUCH_SHARE = 0.6, 0.25
-"""A block touches when the motor carries so much less [N], and at least this share of the load."""
+"""Contact: decrease of the load of the motor [N], and its least share of the load."""
 BUMP_N = 10.0
-"""How much more that must be while the tool is fast, since a motor that speeds up a fall carries
-less too [N]."""
+"""Additional decrease while the tool is fast [N], because a motor that accelerates downwards also
+carries less."""
 OFFSETS = (0.0, 0.0004, -0.0004, 0.0008, -0.0008, 0.0012, -0.0012)
-"""Where a block that met an edge too high up is tried again, along x [m]: neighbours that were
-nudged leave less room than there should be."""
+"""Offsets along x of new attempts after contact with an edge [m]: displaced neighbours can leave
+too little room."""
 
 
 class Descent(Enum):
-    """How the descent of a block goes."""
+    """The state of the descent of a block."""
 
     GOES_ON = 'goes on'
     STANDS = 'stands'
@@ -35,10 +35,10 @@ def descend(simulation: Simulation, memory: Memory, x: float, slack: float) -> D
     """Lower the tool for one time step.
 
     Args:
-        simulation: where the arm is.
+        simulation: the simulation.
         memory: of the act; its arm, attempt and raised are changed.
-        x: where the block is to stand [m].
-        slack: how far from the expected height a contact may be [m].
+        x: target of the block [m].
+        slack: tolerance of the height of the contact [m].
     """
     arm, x = memory.arm, x + OFFSETS[memory.attempt]
     if memory.raised is not None:
@@ -49,7 +49,7 @@ def descend(simulation: Simulation, memory: Memory, x: float, slack: float) -> D
     is_slow = arm.z.position < near
     if _touches(simulation, memory, is_slow):
         return _touched(simulation, memory, near)
-    # Only once the tool has come to rest does its motor feel nothing but the load.
+    # The motor measures only the load once the tool has come to rest.
     if not is_slow and not memory.rests(moving.go(simulation, arm, z=near)):
         return Descent.GOES_ON
     lowest = max(memory.landing - 2 * slack, simulation.sizes.lowest)
@@ -63,7 +63,7 @@ def _touches(simulation: Simulation, memory: Memory, is_slow: bool) -> bool:
 
 
 def _touched(simulation: Simulation, memory: Memory, near: float) -> Descent:
-    """What a contact means; where it is too high, prepare the next attempt."""
+    """Interpret a contact; if it is too high, prepare the next attempt."""
     z = float(simulation.joints[1])
     moving.halt(simulation, memory.arm)
     if z <= near:

@@ -1,4 +1,4 @@
-"""All that an act depends on besides the simulation: what is saved to go on with it later."""
+"""The state of an act apart from the simulation; saved to continue the act later."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from blocks_planning.robot.phases import Phase, Reason
 from blocks_planning.robot.scene import TIMESTEP
 
 REST_S = 0.06
-"""How long something must be at rest to count [s]."""
+"""Time without motion after which something counts as at rest [s]."""
 
 
 @dataclass
 class Memory:
-    """Where an act is.
+    """The state of an act.
 
     Attributes:
-        placement: what was ordered; None before the first order.
+        placement: the order; None before the first one.
         number: of the block that was presented.
-        phase: what the arm does.
-        began: when the act began [s].
-        entered: when the phase began [s].
-        at_rest: for how long what the phase waits for has been at rest [s].
-        travel: z of the tool above everything that stands [m].
-        landing: z of the tool where the block is expected to touch [m].
-        load: what the z axis carried before the block was lowered [N].
-        attempt: how many times the block met an edge on its way down.
-        raised: z to which the tool goes before the next attempt [m]; None: it goes down.
+        phase: the current phase.
+        began: start of the act [s].
+        entered: start of the phase [s].
+        at_rest: time for which the awaited object has been at rest [s].
+        travel: z of the tool above the whole tower [m].
+        landing: z of the tool at the expected contact [m].
+        load: load of the z axis before lowering [N].
+        attempt: number of contacts with an edge during lowering.
+        raised: z to which the tool moves before the next attempt [m]; None: it moves down.
         failed: the phase that failed.
-        reason: why.
-        text: the same in words.
-        stopping: cancelled, and still slowing down.
+        reason: reason of the failure.
+        text: the reason as a sentence.
+        stopping: whether the act was cancelled and the arm is still slowing down.
         settled: whether everything had come to rest at the end of the last act.
         arm: the set points.
     """
@@ -57,17 +57,17 @@ class Memory:
     arm: Arm = field(default_factory=Arm)
 
     def rests(self, is_at_rest: object) -> bool:
-        """Note for one time step whether something is at rest; whether it is for long enough."""
+        """Update for one time step; return whether the object has been at rest long enough."""
         self.at_rest = self.at_rest + TIMESTEP if is_at_rest else 0.0
         return self.at_rest >= REST_S
 
     def to_json(self) -> dict[str, Any]:
-        """As JSON's own types."""
+        """The memory as JSON types."""
         return asdict(self)
 
     @classmethod
     def from_json(cls, values: dict[str, Any]) -> Memory:
-        """The memory that :meth:`to_json` wrote; the text is trusted."""
+        """The memory from the output of :meth:`to_json`; values are not checked."""
         placement, failed, reason = (values[key] for key in ('placement', 'failed', 'reason'))
         arm = values['arm']
         changed = {

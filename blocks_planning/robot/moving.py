@@ -1,4 +1,4 @@
-"""What the arm can be told, and what it can tell, whatever it is doing."""
+"""Elementary motions and states of the arm, independent of the phase."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from blocks_planning.robot.arm import ACCELERATION, FAST, Arm, face
 from blocks_planning.robot.simulation import Simulation
 
 ARRIVED = 0.002
-"""An axis at its target is slower than this [m/s]."""
+"""Speed below which an axis is at its target [m/s]."""
 ASTRAY = 0.004
-"""An axis that lags this far behind its set point is blocked [m]; its motor pushes with 160 N."""
+"""Lag behind the set point at which an axis is blocked [m]; its motor then pushes with 160 N."""
 
 
 def go(
@@ -19,13 +19,13 @@ def go(
     fastest: float = FAST,
     acceleration: float = ACCELERATION,
 ) -> bool:
-    """Move on towards a target for one time step; whether the arm is there.
+    """Move towards a target for one time step; return whether the arm is there.
 
     Args:
-        simulation: where the arm is.
+        simulation: the simulation.
         arm: its set points, which are changed.
-        x: target of the tool [m]; None: stays.
-        z: the same upwards.
+        x: target of the tool [m]; None: no motion along x.
+        z: the same along z.
         fastest: speed of an axis [m/s].
         acceleration: of an axis [m/s2].
     """
@@ -39,7 +39,7 @@ def go(
 
 
 def go_over(simulation: Simulation, arm: Arm, x: float, travel: float) -> bool:
-    """Move up to ``travel``, then to ``x``; whether the arm is at ``x``, at whatever height."""
+    """Move up to ``travel``, then to ``x``; return whether the arm is at ``x``, at any height."""
     if arm.x.position == x and abs(simulation.speeds[0]) < ARRIVED:
         return True
     if arm.x.speed == 0 and not go(simulation, arm, z=travel):
@@ -48,19 +48,19 @@ def go_over(simulation: Simulation, arm: Arm, x: float, travel: float) -> bool:
 
 
 def halt(simulation: Simulation, arm: Arm) -> None:
-    """Stay where the arm is now, so that it does not push on."""
+    """Set the set points to the current position, so that the arm does not keep pushing."""
     arm.x.position, arm.z.position = map(float, simulation.joints[:2])
     arm.x.speed = arm.z.speed = 0.0
 
 
 def is_blocked(simulation: Simulation, arm: Arm) -> bool:
-    """Whether something keeps an axis from where it should be."""
+    """Whether an obstacle blocks an axis."""
     x, z = simulation.joints[:2]
     return bool(max(abs(arm.x.position - x), abs(arm.z.position - z)) > ASTRAY)
 
 
 def is_holding(simulation: Simulation, arm: Arm) -> bool:
-    """Whether there is something between closed fingers."""
+    """Whether the closed fingers hold something."""
     sizes = simulation.sizes
     closing = float(simulation.joints[2:].mean())
     return arm.grip > face(sizes) and closing < face(sizes) + sizes.overclosing / 2

@@ -1,4 +1,4 @@
-"""The names of what the arm does, how long each may take, and why it fails."""
+"""Phases of the arm, their time limits, and the reasons of failure."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from blocks_planning.board.blocks import Placement
 
 
 class Phase(str, Enum):
-    """What the arm does; those from APPROACH to SETTLE make an act, in this order."""
+    """Phases of the arm; an act consists of those from APPROACH to SETTLE, in this order."""
 
     IDLE = 'idle'
     APPROACH = 'approach'
@@ -21,7 +21,7 @@ class Phase(str, Enum):
     RETREAT = 'retreat'
     SETTLE = 'settle'
     BRING_BACK = 'bring_back'
-    """To the feeder: what is left in the gripper by an act that failed or was cancelled."""
+    """Carry the block of a failed or cancelled act back to the feeder."""
 
 
 class Reason(str, Enum):
@@ -56,7 +56,7 @@ BOUNDS_S = {
     Phase.SETTLE: 4.0,
     Phase.BRING_BACK: 30.0,
 }
-"""Longest time of a phase [s], of the simulation: a board of 16 x 16 cells of 20 cm needs half."""
+"""Time limit of each phase, in simulated time [s]: a board of 16 x 16 cells of 20 cm needs half."""
 
 LATE = {
     Phase.APPROACH: Reason.COLLISION,
@@ -68,19 +68,19 @@ LATE = {
     Phase.RETREAT: Reason.COLLISION,
     Phase.BRING_BACK: Reason.COLLISION,
 }
-"""What it means if a phase takes longer. SETTLE ends then without a failure."""
+"""The reason of failure if a phase exceeds its limit. SETTLE then ends without a failure."""
 
 
 @dataclass(frozen=True)
 class Report:
-    """How an act ended.
+    """The report of an act.
 
     Attributes:
-        placement: what was ordered.
+        placement: the order.
         phase: the last one, or the one that failed.
-        reason: why it failed; None if it did not.
-        text: the same as a sentence; '' if it did not fail.
-        seconds: how long it took, in the time of the simulation [s].
+        reason: reason of the failure; None if there was none.
+        text: the reason as a sentence; '' if there was no failure.
+        seconds: duration in simulated time [s].
         settled: whether everything had come to rest at the end.
     """
 
@@ -94,13 +94,13 @@ class Report:
 
 @dataclass(frozen=True)
 class Progress:
-    """Where an act is.
+    """The progress of an act.
 
     Attributes:
-        phase: what the arm does.
-        fraction: how many of the phases of an act are over, 0 to 1.
-        time: of the simulation [s].
-        report: how the act ended; None while it goes on.
+        phase: the current phase.
+        fraction: share of the phases that are finished, 0 to 1.
+        time: simulated time [s].
+        report: the report of the act; None while it is in progress.
     """
 
     phase: Phase

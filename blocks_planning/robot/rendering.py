@@ -1,4 +1,4 @@
-"""Pictures of the scene, drawn without a screen by EGL or OSMesa where the machine has one."""
+"""Pictures of the scene, rendered without a screen by EGL or OSMesa."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ MAX_GEOMS = 400
 
 
 def _new_context(width: int, height: int) -> Any:
-    """A context for drawing; MUJOCO_GL names the only one to try.
+    """A rendering context; MUJOCO_GL restricts the choice to one backend.
 
     Raises:
-        ConfigurationError: with the reason of each that was tried.
+        ConfigurationError: with the reason for each backend that was tried.
     """
     wanted = os.environ.get('MUJOCO_GL', '').lower()
     reasons = []
@@ -38,7 +38,7 @@ def _new_context(width: int, height: int) -> Any:
             return context
         reasons.append(f'{name}: {reason}')
     raise ConfigurationError(
-        'pictures cannot be drawn here, see poses instead or install libegl1 and '
+        'this machine cannot render pictures; use perception poses, or install libegl1 and '
         f'libegl-mesa0 ({"; ".join(reasons)})'
     )
 
@@ -48,20 +48,20 @@ def _try(name: str, width: int, height: int) -> tuple[Any, str]:
     try:
         context = import_module(f'mujoco.{name}').GLContext(width, height)
         context.make_current()
-    except Exception as error:  # noqa: BLE001  a missing library shows itself in many ways
+    except Exception as error:  # noqa: BLE001  a missing library can raise any exception
         return None, f'{type(error).__name__}: {" ".join(str(error).split())}'
     return context, ''
 
 
 class Painter:
-    """Draws a simulation; to be used by the thread that made it.
+    """Renders a simulation; usable only by the thread that created it.
 
     Raises:
-        ConfigurationError: if nothing can be drawn on this machine.
+        ConfigurationError: if this machine cannot render.
     """
 
     def __init__(self, simulation: Simulation) -> None:
-        """Get a context for drawing."""
+        """Create the rendering context."""
         self._simulation = simulation
         visual = simulation.model.vis.global_
         self._gl: Any = _new_context(visual.offwidth, visual.offheight)
@@ -72,13 +72,13 @@ class Painter:
         self._options = mujoco.MjvOption()
         self._model: Any = None
         self._scene: Any = None
-        # Python ends with what the context needs gone already.
+        # Close at exit, before Python removes what the context needs.
         atexit.register(self.close)
 
     def paint(self, camera: str, width: int, height: int) -> Pixels:
         """A picture by a camera of the scene, ``width`` x ``height`` [pixels].
 
-        The film camera switches its light on; the others see plain colours.
+        The film camera switches on its light; the others show plain colours.
         """
         model, data = self._simulation.model, self._simulation.data
         is_film = camera == FILM_CAMERA
@@ -107,7 +107,7 @@ class Painter:
         return pixels[::-1]
 
     def close(self) -> None:
-        """Give the context back; nothing can be painted any more."""
+        """Release the context; the painter cannot be used afterwards."""
         if self._gl is not None:
             self._gl.make_current()
             self._context.free()
@@ -117,7 +117,7 @@ class Painter:
 
 
 def why_blind(simulation: Simulation) -> str:
-    """Why nothing can be drawn on this machine; '' if it can."""
+    """The reason why this machine cannot render; '' if it can."""
     try:
         Painter(simulation).close()
     except ConfigurationError as error:

@@ -1,4 +1,4 @@
-"""The robot: takes orders, moves on tick by tick, sees, and can be saved and restored.
+"""The robot: accepts orders, moves step by step, perceives, and can be saved and restored.
 
 ::
 
@@ -29,11 +29,11 @@ from blocks_planning.robot.sizes import Sizes
 
 STEPS_PER_TICK = 5
 TICK = STEPS_PER_TICK * TIMESTEP
-"""Time that passes in one :meth:`Robot.step` [s]."""
+"""Simulated time of one :meth:`Robot.step` [s]."""
 TOLERANCE = 0.25
-"""Share of a cell by which a block may miss its cells without a warning."""
+"""Share of a cell by which a block may deviate without a warning."""
 NOISE_TOLERANCE = 3
-"""Standard deviations of the noise that are allowed for in heights."""
+"""Tolerance of heights, in standard deviations of the noise."""
 
 
 class Robot:
@@ -41,18 +41,18 @@ class Robot:
 
     Args:
         board: its size.
-        settings: the robot, its blocks, its noise; None: all as usual.
+        settings: of the robot, its blocks and its noise; None: the defaults.
         seed: of all noise, 0 to 2**64 - 1.
 
     Raises:
-        ConfigurationError: if the camera is asked for and nothing can be rendered here.
+        ConfigurationError: if the camera is selected and this machine cannot render.
 
     Attributes:
         board: its size.
         settings: as given.
         seed: as given.
         simulation: for pictures, joints and poses.
-        seen: what was perceived last.
+        seen: the last perception.
     """
 
     def __init__(self, board: Board, settings: RobotSettings | None = None, seed: int = 0) -> None:
@@ -71,23 +71,23 @@ class Robot:
     # --- act --------------------------------------------------------------------------------
 
     def order(self, placement: Placement) -> None:
-        """Begin to place a block; :meth:`step` goes on with it.
+        """Begin to place a block; :meth:`step` continues.
 
-        Whether it can come to rest on the board is judged by what was perceived last.
+        The last perception decides whether the block can come to rest on the board.
 
         Raises:
             InvalidInput: if another order is being carried out.
         """
         if self.is_busy:
             raise InvalidInput(
-                'the robot carries out another order: wait for its report, or cancel it first'
+                'the robot is carrying out another order: wait for its report, or cancel it first'
             )
         landed = rules.drop(self.board, self.seen.built(self.board), placement)
         row = None if landed is None else landed.row
         self._behaviour.begin(placement, row, self._highest())
 
     def step(self) -> Progress:
-        """Let ``TICK`` pass; the arm moves on if there is an order."""
+        """Simulate ``TICK``; the arm moves if there is an order."""
         report: Report | None = None
         for _ in range(STEPS_PER_TICK):
             report = self._behaviour.step() or report
@@ -97,9 +97,9 @@ class Robot:
         return Progress(progress.phase, progress.fraction, progress.time, report)
 
     def cancel(self) -> None:
-        """Stop the arm. It is at rest in less than 0.2 s; then :meth:`step` gives the report.
+        """Stop the arm. It is at rest in less than 0.2 s; then :meth:`step` returns the report.
 
-        What it holds it goes on holding; the next order brings it back to the feeder first.
+        The arm keeps holding its block; the next order brings the block back to the feeder first.
         """
         self._behaviour.cancel()
 
@@ -118,7 +118,7 @@ class Robot:
 
     @property
     def is_moving(self) -> bool:
-        """Whether an axis is on its way."""
+        """Whether an axis is moving."""
         return not self._behaviour.memory.arm.is_at_rest
 
     @property
@@ -128,7 +128,7 @@ class Robot:
 
     @property
     def time(self) -> float:
-        """Time of the simulation [s]."""
+        """Simulated time [s]."""
         return self.simulation.time
 
     def _highest(self) -> float:
@@ -138,7 +138,7 @@ class Robot:
     # --- perceive ---------------------------------------------------------------------------
 
     def perceive(self) -> Perceived:
-        """Look at the board; it is also what the next order goes by."""
+        """Perceive the board; the next order uses this perception."""
         bodies = self._looked_at()
         if self._camera is None:
             sightings = see_poses(self.simulation, bodies, self.seed, self._perceptions)
@@ -149,7 +149,7 @@ class Robot:
         return self.seen
 
     def _looked_at(self) -> list[Body]:
-        """Every block but those at the feeder and in the fingers."""
+        """Every block except those at the feeder and in the fingers."""
         held = self.held
         return [
             body
@@ -160,14 +160,14 @@ class Robot:
     # --- save -------------------------------------------------------------------------------
 
     def state(self) -> bytes:
-        """All that the future depends on, in the middle of an act too."""
+        """The complete state, also in the middle of an act."""
         return saving.pack(self.simulation, self._behaviour.memory, self.seen, self._perceptions)
 
     def restore(self, data: bytes) -> None:
-        """Go on where :meth:`state` was taken, by a robot with the same board and settings.
+        """Continue from a :meth:`state` of a robot with the same board and settings.
 
         Raises:
-            InvalidInput: if the data are of another robot or damaged; nothing is changed then.
+            InvalidInput: if the data are of another robot or damaged; then nothing is changed.
         """
         saved = saving.unpack(self.simulation, data)
         self._behaviour.memory, self.seen, self._perceptions = saved

@@ -41,7 +41,7 @@ def pack(simulation: Simulation, memory: Memory, seen: Perceived, perceptions: i
 
 
 def unpack(simulation: Simulation, data: bytes) -> tuple[Memory, Perceived, int]:
-    """Put a simulation into a saved state; return what else was saved.
+    """Restore a simulation; return the other saved data.
 
     Raises:
         InvalidInput: if the data are damaged, or of another version, board or settings.
@@ -71,7 +71,7 @@ def _digest(content: bytes) -> bytes:
 
 
 def _scene_of(simulation: Simulation) -> dict[str, Any]:
-    """What must be the same for a state to fit."""
+    """The properties that must be equal for a state to be usable."""
     board = simulation.sizes.board
     size = {'width': board.width, 'height': board.height}
     return {**size, **settings_of(simulation.settings)}

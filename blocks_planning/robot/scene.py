@@ -1,11 +1,11 @@
 """The scene as an MJCF model: table, feeder, gantry, cameras, blocks.
 
-A gantry of our own and no model of a product: it needs no meshes, so nothing is downloaded and
-no licence comes with it; its tool point is its joints, so there is no inverse kinematics to fail;
-and the fingers stay in front of and behind the board, where a tower can never be in their way.
+The gantry is not the model of a product. It needs no meshes, so nothing is downloaded and no
+further licence applies; the joint positions are the tool position, so no inverse kinematics is
+needed; and the fingers stay in front of and behind the board, where the tower never obstructs them.
 
-The integrator, the cones and ``impratio`` are those with which a grip by friction holds: with
-pyramidal cones or an impratio of 1 a block creeps out of the fingers.
+The integrator, the friction cones and ``impratio`` make a grip by friction stable: with pyramidal
+cones or an impratio of 1 a block creeps out of the fingers.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ FINGERS = ('finger_front', 'finger_back')
 JOINTS = (*AXES, *FINGERS)
 FRONT_CAMERA, FILM_CAMERA, FILM_LIGHT = 'front', 'film', 'film_light'
 PIXELS_PER_CELL = 16
-"""Of the front camera."""
+"""Resolution of the front camera."""
 STIFFNESS = 40000.0
-"""Of an axis [N/m]: a block of 0.2 kg lowers it by 0.05 mm."""
+"""Stiffness of an axis [N/m]: a block of 0.2 kg lowers it by 0.05 mm."""
 DAMPING = 900.0
-"""Of an axis [N s/m]: a little above critical for the moving mass."""
+"""Damping of an axis [N s/m]: slightly above critical for the moving mass."""
 
 _BLOCK_CONTACT = {'contype': '1', 'conaffinity': '3', 'solref': '0.005 1'}
 _ARM_CONTACT = {'contype': '2', 'conaffinity': '1'}
@@ -53,8 +53,8 @@ class Body:
     Attributes:
         number: counts the blocks that the feeder has presented, from 0.
         block: its size [cells].
-        pose: where it is put when the model is made.
-        fixed: glued there.
+        pose: its pose when the model is created.
+        fixed: whether it is glued.
     """
 
     number: int
@@ -102,9 +102,9 @@ def _add_appearance(root: Xml.Element, sizes: Sizes) -> None:
     visual = _add(root, 'visual')
     side = str(PIXELS_PER_CELL * max(sizes.board.width, sizes.board.height, 40))
     _add(visual, 'global', offwidth=side, offheight=side)
-    # No smoothing of edges: a pixel has the colour of one block, not of a mixture.
+    # No anti-aliasing: a pixel has the colour of one block, not a mixture.
     _add(visual, 'quality', offsamples='0', shadowsize='1024')
-    # Light comes from everywhere, so that a block looks the same wherever it stands.
+    # Ambient light only, so that the colour of a block does not depend on its place.
     _add(visual, 'headlight', ambient='1 1 1', diffuse='0 0 0', specular='0 0 0', active='1')
     asset = _add(root, 'asset')
     _add(
@@ -146,7 +146,7 @@ def _add_surroundings(world: Xml.Element, sizes: Sizes, settings: RobotSettings)
         xyaxes='1 0 0 0 0 1',
         fovy=repr(height),
     )
-    # For films only: a light that is off, so that the front camera sees plain colours.
+    # A light for films only; it is off, so that the front camera sees plain colours.
     _add(
         world,
         'light',
@@ -290,7 +290,7 @@ def _add_actuators(root: Xml.Element, sizes: Sizes, settings: RobotSettings) -> 
         _add_servo(actuators, name, STIFFNESS, DAMPING)
     stiffness = settings.grip_force_n / sizes.overclosing
     for name in FINGERS:
-        # Critical for the 0.1 kg of a finger.
+        # Critical damping for a finger of 0.1 kg.
         _add_servo(actuators, name, stiffness, 2 * (0.1 * stiffness) ** 0.5)
 
 

@@ -1,4 +1,4 @@
-"""Blocks as they are seen by their poses, with noise."""
+"""Perception of blocks from their poses, with noise."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from blocks_planning.robot.scene import Body, Pose
 from blocks_planning.robot.simulation import Simulation
 
 LEAST_UPRIGHT = 0.87
-"""Cosine of the angle by which a block may lean out of the plane of the board: 30 degrees."""
+"""Cosine of the largest angle between a block and the plane of the board: 30 degrees."""
 
 
 def see_poses(
     simulation: Simulation, bodies: Iterable[Body], seed: int, count: int
 ) -> list[Sighting]:
-    """Sightings of blocks by their poses.
+    """Sightings of blocks from their poses.
 
     Args:
-        simulation: where they are.
-        bodies: those to look at.
+        simulation: the simulation.
+        bodies: the blocks to perceive.
         seed: of the noise.
         count: number of earlier perceptions.
     """
@@ -49,9 +49,9 @@ def _see(simulation: Simulation, body: Body, seed: int, count: int) -> Sighting:
 
 
 def angle_of(pose: Pose) -> float:
-    """How far a block is turned in the plane of the board [rad], counterclockwise as seen."""
+    """Rotation of a block in the plane of the board [rad], counterclockwise in the picture."""
     w, x, y, z = pose.orientation
-    # Where the block's own x axis points, along x and z of the board.
+    # Direction of the block's own x axis, along x and z of the board.
     return atan2(2 * (x * z - w * y), 1 - 2 * (y * y + z * z))
 
 

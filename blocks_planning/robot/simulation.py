@@ -1,7 +1,7 @@
-"""The physics: MuJoCo with the arm and the blocks that there are now.
+"""The physics: MuJoCo with the arm and the current blocks.
 
-A block appears, is glued or taken away by making the model anew; what moves goes on with its
-positions and speeds. A glued block is a part of the table from then on, so it costs no time.
+To add, glue or remove a block, the model is rebuilt; moving bodies keep their positions and speeds.
+A glued block becomes a part of the table, so it needs no computing time.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 Z = 1
 """Index of the z axis in ``JOINTS``."""
 STILL = 0.003
-"""A corner of a block at rest is slower than this [m/s]."""
+"""Speed of corners below which a block is at rest [m/s]."""
 
 
 class Simulation:
-    """Blocks and arm, and the time that has passed.
+    """Blocks, arm and simulated time.
 
     Attributes:
-        bodies: the blocks that are there.
+        bodies: the current blocks.
         next_number: of the next block.
     """
 
@@ -57,11 +57,11 @@ class Simulation:
         return model_text(self.sizes, self.settings, self.bodies)
 
     def step(self) -> None:
-        """Let the next ``TIMESTEP`` pass."""
+        """Simulate one ``TIMESTEP``."""
         mujoco.mj_step(self.model, self.data)
 
     def refresh(self) -> None:
-        """Compute what follows from positions; nothing moves."""
+        """Compute derived quantities from positions, without motion."""
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
@@ -79,27 +79,27 @@ class Simulation:
 
     @property
     def lift(self) -> float:
-        """Force of the motor of the z axis upwards [N]: the weight of what hangs from the tool.
+        """Upward force of the motor of the z axis [N]: the weight that hangs from the tool.
 
-        It is computed from the law of the servo, because what MuJoCo keeps is that of the step
-        before, and is not there after a restore.
+        It is computed from the control law of the servo, because MuJoCo stores the force of the
+        previous step, which is missing after a restore.
         """
         lag = float(self.data.ctrl[Z] - self.data.qpos[Z])
         return STIFFNESS * lag - DAMPING * float(self.data.qvel[Z])
 
     def command(self, targets: Iterable[float]) -> None:
-        """Give the set points of ``JOINTS`` [m]."""
+        """Set the set points of ``JOINTS`` [m]."""
         self.data.ctrl[:] = tuple(targets)
 
     def put_arm(self, positions: Iterable[float]) -> None:
-        """Set the joints without moving there."""
+        """Set the joint positions without motion."""
         self.data.qpos[: len(JOINTS)] = tuple(positions)
         self.data.ctrl[:] = self.data.qpos[: len(JOINTS)]
 
     # --- the blocks -------------------------------------------------------------------------
 
     def add(self, block: Block, x: float) -> int:
-        """Stand a block on the table with its middle at ``x``; return its number."""
+        """Place a block on the table with its centre at ``x``; return its number."""
         half = self.sizes.half(block)
         number, self.next_number = self.next_number, self.next_number + 1
         body = Body(number, block, Pose((x, self.sizes.middle, half[2])))
@@ -107,13 +107,13 @@ class Simulation:
         return number
 
     def remove(self, numbers: Iterable[int]) -> None:
-        """Take blocks away."""
+        """Remove blocks."""
         unwanted = set(numbers)
         if unwanted:
             self._rebuild(tuple(body for body in self.bodies if body.number not in unwanted))
 
     def glue(self, numbers: Iterable[int]) -> None:
-        """Fix blocks where they are now."""
+        """Fix blocks in their current poses."""
         wanted = set(numbers)
         if wanted:
             self._rebuild(
@@ -126,7 +126,7 @@ class Simulation:
             )
 
     def body(self, number: int) -> Body:
-        """The block of a number that is there."""
+        """The current block of a number."""
         return next(body for body in self.bodies if body.number == number)
 
     @property
@@ -135,11 +135,11 @@ class Simulation:
         return tuple(body for body in self.bodies if not body.fixed)
 
     def is_at_feeder(self, number: int) -> bool:
-        """Whether a block is where the feeder presents its own, or beyond."""
+        """Whether a block is at the feeder, or beyond it."""
         return self.pose(number).position[0] < -2 * self.sizes.cell
 
     def pose(self, number: int) -> Pose:
-        """Where a block is now."""
+        """The current pose of a block."""
         body = self.body(number)
         if body.fixed:
             return body.pose
@@ -147,7 +147,7 @@ class Simulation:
         return Pose((values[0], values[1], values[2]), tuple(values[3:7]))
 
     def place(self, number: int, pose: Pose) -> None:
-        """Set a loose block down somewhere, at rest."""
+        """Set the pose of a loose block, at rest."""
         self._positions(self.body(number))[:] = (*pose.position, *pose.orientation)
         self._velocities(self.body(number))[:] = 0
 
@@ -156,7 +156,7 @@ class Simulation:
         self._velocities(self.body(number))[:3] = velocity
 
     def fastest(self, numbers: Iterable[int]) -> float:
-        """Greatest speed of a corner among some loose blocks [m/s], from above."""
+        """Upper bound of the speed of corners of some loose blocks [m/s]."""
         fastest = 0.0
         for number in numbers:
             body = self.body(number)
@@ -182,16 +182,16 @@ class Simulation:
 
     @property
     def state(self) -> Floats:
-        """All that the future depends on, for the bodies that are there now."""
+        """The complete state of the current bodies."""
         values = np.empty(mujoco.mj_stateSize(self.model, _STATE))
         mujoco.mj_getState(self.model, self.data, values, _STATE)
         return values
 
     def restore(self, bodies: tuple[Body, ...], next_number: int, state: Floats) -> None:
-        """Go back to a state.
+        """Restore a state.
 
         Raises:
-            ValueError: if the state is none of these bodies; nothing is changed then.
+            ValueError: if the state does not fit these bodies; then nothing is changed.
         """
         before = self.bodies, self.next_number
         self.bodies, self.next_number = bodies, next_number
@@ -209,7 +209,7 @@ class Simulation:
         self.refresh()
 
     def _rebuild(self, bodies: tuple[Body, ...]) -> None:
-        """Make the model of other bodies; those that stay loose go on as they were."""
+        """Rebuild the model for other bodies; loose bodies keep their state."""
         count = len(JOINTS)
         old, kept = self.data, self.free
         poses = {body.number: np.array(self._positions(body)) for body in kept}

@@ -29,8 +29,8 @@ class Sizes:
     def half(self, block: Block) -> tuple[float, float, float]:
         """Half the sides of a block along x, y and z.
 
-        Only width and depth are smaller than the cells. Were the height smaller too, two low
-        blocks would end below one high block, and a block across both would tilt.
+        Only width and depth are smaller than the cells. If the height were smaller too, two stacked
+        low blocks would end below one high block, and a block across both would tilt.
         """
         return (
             (block.width * self.cell - self.gap) / 2,
@@ -45,7 +45,7 @@ class Sizes:
 
     @property
     def below_top(self) -> float:
-        """From the top of a block down to where it is gripped."""
+        """Distance from the top of a block down to the grip."""
         return 0.4 * self.cell
 
     @property
@@ -60,27 +60,27 @@ class Sizes:
 
     @property
     def open_gap(self) -> float:
-        """Between an open finger and the face of the cell."""
+        """Gap between an open finger and the face of the cell."""
         return 0.4 * self.cell
 
     @property
     def overclosing(self) -> float:
-        """How far inside the face of a block the set point of a closed finger lies."""
+        """Distance of the set point of a closed finger inside the face of a block."""
         return 0.12 * self.cell
 
     @property
     def palm_above(self) -> float:
-        """From the tool up to the lower face of the palm."""
+        """Distance from the tool up to the lower face of the palm."""
         return 0.75 * self.cell
 
     @property
     def clearance(self) -> float:
-        """Least distance between what is carried and what stands below."""
+        """Least distance between the carried block and the tower."""
         return 0.5 * self.cell
 
     @property
     def rail(self) -> float:
-        """z of the rail, above any tower with a block carried over it."""
+        """z of the rail, high enough to carry a block over any tower."""
         return (2 * self.board.height + 4) * self.cell
 
     def feeder(self, block: Block) -> float:

@@ -1,4 +1,4 @@
-"""The whole graph as processes: started for a script, kept alive, and stopped."""
+"""The whole graph as processes: starts it for a script, keeps it alive, and stops it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class BringupSpec:
         bag: folder of the bag; None for no bag.
         namespace: of all nodes, '' for none.
         domain: ROS domain; None for a free one.
-        placing_s: how long placing a block takes [s].
+        placing_s: duration of a placement [s].
         participant: code of the person who plans, '' for that of the script.
         markers: whether the tower is shown as markers, for RViz and Foxglove.
         view: host and port of the page, port 0 for a free one; None for no page.
@@ -57,7 +57,7 @@ class BringupSpec:
 
     @property
     def records(self) -> Path:
-        """Where the records are."""
+        """The file of the records."""
         return self.out / RECORDS
 
 
@@ -65,7 +65,7 @@ class Bringup:
     """A graph of processes, and a node in this process that watches it."""
 
     def __init__(self, spec: BringupSpec) -> None:
-        """Prepare; nothing is started yet."""
+        """Prepare; :meth:`run` starts the processes."""
         self._domain = Domain(spec.domain)
         self._environment = self._domain.environment(os.environ)
         self._environment.setdefault('ROS_LOG_DIR', str(spec.out / 'log'))
@@ -87,7 +87,7 @@ class Bringup:
 
     @property
     def look_in(self) -> str:
-        """The command for another terminal, so that its ROS commands see this graph."""
+        """The command that lets another terminal join this graph."""
         names = sorted(self._domain.environment({}).keys() - {'AMENT_PREFIX_PATH'})
         return ' '.join(['export', *(f'{name}={self._environment[name]}' for name in names)])
 
@@ -133,9 +133,10 @@ class Bringup:
         return NodeProcess(name, arguments, environment)
 
     def run(self, on_tick: Callable[[Scene | None], None]) -> int:
-        """Run the script to its end; always take all processes down again.
+        """Run the script to its end; always stop all processes.
 
-        Of this process, rclpy stays up: see :func:`blocks_planning.ros.runtime.process.leave_if_up`.
+        rclpy stays initialised in this process: see
+        :func:`blocks_planning.ros.runtime.process.leave_if_up`.
 
         Args:
             on_tick: called several times a second with the current scene.
@@ -147,7 +148,7 @@ class Bringup:
             BlocksPlanningError: if a node could not be kept alive, or refused its parameters.
             KeyboardInterrupt: on SIGINT or SIGTERM.
         """
-        # An exception in the middle of a conversion in C would come out as another one.
+        # An exception inside a conversion in C would be replaced by another one.
         interrupted = threading.Event()
         before = {
             number: signal.signal(number, lambda *_: interrupted.set())
@@ -181,16 +182,14 @@ class Bringup:
     def _keep_alive(self) -> None:
         for process in self._processes:
             if process.exit_code() == BAD_INPUT:
-                raise BlocksPlanningError(
-                    f'{process.name} refused to start: see its message above'
-                )
+                raise BlocksPlanningError(f'{process.name} did not start: see its message above')
             if process.keep_alive():
                 continue
             said = (
                 f'{process.name} ended {process.deaths + process.kills} times in a row soon after '
-                f'its start, the last time with exit code {process.exit_code()}'
+                f'its start; the last exit code was {process.exit_code()}'
             )
             if process.name not in LISTENERS:
                 raise BlocksPlanningError(said)
             process.is_given_up = True
-            sys.stderr.write(f'{said}; the trials go on without it\n')
+            sys.stderr.write(f'{said}; the trials continue without it\n')

@@ -1,7 +1,7 @@
 """The executables of ``ros2 run``: one function per node.
 
 Importing a node takes a while (rclpy, numba), and a signal during the import would end in a
-traceback. So this module imports almost nothing. Until a node has its own handlers a signal just
+traceback. So this module imports almost nothing. Until a node has its own handlers, a signal simply
 ends the process; there is nothing to shut down yet.
 """
 
@@ -20,37 +20,37 @@ def _start(name: str) -> None:
 
 
 def world() -> None:
-    """The board."""
+    """Owns the board."""
     _start('world')
 
 
 def subgoal_selector() -> None:
-    """Which region comes next."""
+    """Chooses the next region."""
     _start('subgoal_selector')
 
 
 def action_searcher() -> None:
-    """How a region is filled."""
+    """Plans how to fill a region."""
     _start('action_searcher')
 
 
 def trial_orchestrator() -> None:
-    """Which trial runs."""
+    """Runs the trials."""
     _start('trial_orchestrator')
 
 
 def bag_recorder() -> None:
-    """The bag."""
+    """Records a bag."""
     _start('bag_recorder')
 
 
 def marker_publisher() -> None:
-    """The tower in space."""
+    """Shows the tower in RViz and Foxglove."""
     _start('marker_publisher')
 
 
 def trial_view() -> None:
-    """The page."""
+    """Serves the page."""
     _start('trial_view')
 
 

@@ -1,1 +1,1 @@
-"""Action-level search: placements that fill a region, and what finding them costs."""
+"""Action-level search: finds placements that fill a region, and counts the cost."""

@@ -1,4 +1,4 @@
-"""Distributions of what attempts cost, and of how many follow one another within a budget."""
+"""Distributions of the costs of attempts, and of the number of attempts within a budget."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ class Costs(NamedTuple):
 
 
 class Arrivals:
-    """Ways into a state, or into an end of the attempt: what they cost, and how likely.
+    """Paths into a state, or into an end of the attempt: their costs and probabilities.
 
     ``expected`` is the probability times the expected cost [states].
     """
 
     def __init__(self) -> None:
-        """No way yet."""
+        """Start without paths."""
         self.probability = 0.0
         self.expected = 0.0
         self._parts: list[Costs] = []
@@ -32,13 +32,13 @@ class Arrivals:
         return sum(len(part.cost) for part in self._parts)
 
     def add(self, probability: float, expected: float, costs: Costs) -> None:
-        """Add a way."""
+        """Add a path."""
         self.probability += probability
         self.expected += expected
         self._parts.append(costs)
 
     def costs(self) -> Costs:
-        """The probabilities of all costs; there must be a way."""
+        """The probabilities of all costs; there must be a path."""
         if len(self._parts) == 1:
             return self._parts[0]
         cost, places = np.unique(
@@ -51,8 +51,8 @@ class Arrivals:
 def expected_attempts(failures: Arrivals, budget: int) -> float:
     """Expected number of attempts that begin: the first, and one after each failure in time.
 
-    It is 1 + P(F1 < b) + P(F2 < b) + ..., where Fk is what k failed attempts cost, and the
-    probability includes that all k fail: the coefficients below b of the power series
+    It is 1 + P(F1 < b) + P(F2 < b) + ..., where Fk is the cost of k failed attempts, and
+    the probability includes that all k fail: the coefficients below b of the power series
     1 / (1 - f), where f has the probabilities of failing at each cost, summed.
 
     Args:

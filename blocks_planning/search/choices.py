@@ -1,4 +1,4 @@
-"""What bfs and random do in any state of a region: the steps of an exact policy."""
+"""The choices of bfs and random in any state of a region: the steps of an exact policy."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from blocks_planning.search.result import CancelToken, Problem
 from blocks_planning.search.searches import BreadthFirst
 
 CHUNK = 1 << 15
-"""Most states from which random placements are spread at a time."""
+"""Largest number of states from which random placements are expanded at a time."""
 
 
 class Way(NamedTuple):
@@ -29,12 +29,13 @@ class Way(NamedTuple):
 
 
 class Choices(NamedTuple):
-    """What bfs does in a state.
+    """The choices of bfs in a state.
 
     Attributes:
         evaluated: cost of looking ahead from it [states].
         complete: whether it finds a complete state and builds all of it.
-        ways: else what it can choose, with chances in proportion to the weights; none if stuck.
+        ways: otherwise the possible choices, with probabilities proportional to the weights; none
+            if stuck.
     """
 
     evaluated: int
@@ -43,7 +44,7 @@ class Choices(NamedTuple):
 
 
 class Chooser:
-    """Says what bfs does in any state of a region.
+    """Computes the choices of bfs in any state of a region.
 
     A state is its shadow (see :mod:`.moves`) and its number of filled cells.
     """
@@ -64,7 +65,7 @@ class Chooser:
         self._moves, self._weights = np.zeros(most, np.int64), np.zeros(most, np.int64)
 
     def choices(self, shadow: Mask, filled: int) -> Choices | None:
-        """What is done in a state that is not complete; None if cancelled."""
+        """The choices in a state that is not complete; None if cancelled."""
         cells = self._tables.cells
         evaluated, ending, count = breadth_first.choices_from(
             self._search,
@@ -86,14 +87,14 @@ class Chooser:
 
 
 class Layer(NamedTuple):
-    """States with equally many filled cells, and how likely a walk comes through each."""
+    """States with equally many filled cells, and the probability of passing through each."""
 
     states: np.ndarray  # shadows, mask (n,)
     chances: np.ndarray  # float64 (n,)
 
 
 def spread_at_random(problem: Problem, filled: int, layer: Layer) -> dict[int, Layer]:
-    """Where random placements lead from a layer, by number of filled cells [cells].
+    """The layers that random placements reach from a layer, by number of filled cells [cells].
 
     States from which the region can't be filled any more are left out.
     """
@@ -120,14 +121,14 @@ def spread_at_random(problem: Problem, filled: int, layer: Layer) -> dict[int, L
 
 
 def chunks_of(layer: Layer) -> Iterator[Layer]:
-    """A layer in parts of at most ``CHUNK`` states, to bound the memory of what follows them."""
+    """A layer in parts of at most ``CHUNK`` states, to bound the memory of the next layers."""
     for first in range(0, len(layer.chances), CHUNK):
         part = slice(first, first + CHUNK)
         yield Layer(layer.states[part], layer.chances[part])
 
 
 def join_layers(layers: list[Layer]) -> Layer:
-    """Layers in one, each state once."""
+    """Layers merged into one, with each state once."""
     states = np.concatenate([layer.states for layer in layers])
     chances = np.concatenate([layer.chances for layer in layers])
     axis = None if states.ndim == 1 else 0

@@ -1,4 +1,4 @@
-"""From problems to the kernels' arguments, and back to results."""
+"""Converts problems to arguments of the kernels, and their output to results."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _STATUS = {
 _MASK_BYTES = 32
 
 MakeMemory = Callable[[Task, Tables, int, int], Any]
-"""The memory of a search: of (task, its tables, most cells to be filled, growth); see :mod:`.memory`."""
+"""The memory of a search: of (task, its tables, most cells to fill, growth); see :mod:`.memory`."""
 
 tables_of = lru_cache(maxsize=4096)(make_tables)
 """The tables of (task, region), made once."""
@@ -89,10 +89,10 @@ class Solver:
 
         Args:
             problems: of the task.
-            stop: uint8 (1,), other than 0 to take up no further problem from then on.
+            stop: uint8 (1,); if it is not 0, no further problem is started.
 
         Returns:
-            Their results; None for those that were not taken up.
+            Their results; None for problems that were not started.
         """
         batch = self._batch(problems, stop)
         self._solve(batch)
@@ -104,10 +104,10 @@ class Solver:
         ]
 
     def run_one(self, problem: Problem) -> SolveResult:
-        """Solve a problem; the search gets more memory as long as it has too little.
+        """Solve a problem; repeat with more memory if the search had too little.
 
         Raises:
-            LimitExceeded: if it would outgrow its memory.
+            LimitExceeded: if it would exceed its memory limit.
         """
         while True:
             batch = self._batch([problem], np.zeros(1, np.uint8))
@@ -179,7 +179,7 @@ def solve_one(
     """Solve a problem with a compiled search.
 
     Raises:
-        LimitExceeded: if the search would outgrow its memory.
+        LimitExceeded: if the search would exceed its memory limit.
     """
     left = area(problem.region) - area(problem.built)
     return Solver(problem.task, make_memory, left, seed, budget, cancel).run_one(problem)
@@ -195,7 +195,7 @@ class _Step(NamedTuple):
 
 
 class _Steps:
-    """The moves of a library on a board, each looked up once."""
+    """The moves of a library on a board, cached."""
 
     def __init__(self, board: Board, library: Library) -> None:
         self._board, self._library = board, library
@@ -220,10 +220,10 @@ _steps_of = lru_cache(maxsize=64)(_Steps)
 
 
 def placements_of(problem: Problem, moves: list[int]) -> tuple[Placed, ...]:
-    """The placements of some moves (see :class:`Tables`), each held to the rules.
+    """The placements of some moves (see :class:`Tables`), each checked against the rules.
 
     Raises:
-        BlocksPlanningError: if a move is not legal, which would be a defect of a kernel.
+        BlocksPlanningError: if a move is not legal, which indicates a defect of a kernel.
     """
     if not moves:
         return ()
@@ -246,13 +246,13 @@ def count_nodes(
 ) -> list[int] | None:
     """Tree nodes at depths 1 to n, summed, for n = 1 to ``depth``; None if cancelled.
 
-    It is what a breadth-first search from the empty board evaluates when nothing is found.
+    A breadth-first search from the empty board evaluates that many states if it finds no solution.
 
     Args:
         task: silhouette and blocks.
         depth: n, 1 or more.
         cancel: ends it from another thread.
-        counts: int64 (depth,), all 0: each number is written there as soon as it is known, also
+        counts: int64 (depth,), all 0: each number is written there as soon as it is known, even
             if the count is cancelled later.
     """
     nowhere = tables_of(task, task.silhouette)._replace(target=-1)

@@ -1,4 +1,4 @@
-"""How large a task is: the states that can be reached, and the sequences of placements.
+"""The size of a task: numbers of reachable states and of sequences of placements.
 
 The paper speaks of "roughly 35^15" states, the number of sequences of 15 placements with 35 choices
 each. Here both are counted exactly: states are different sets of filled cells, sequences are
@@ -28,20 +28,20 @@ from blocks_planning.search.result import CancelToken
 from blocks_planning.search.state_counts import count_states
 
 MAX_OUTLINES = 10_000_000
-"""Most outlines that are kept, some 50 bytes each (0.5 GB)."""
+"""Largest number of stored outlines, about 50 bytes each (0.5 GB)."""
 _AT_FIRST = 1 << 18
 _GROWTH = 4
 
 
 @dataclass(frozen=True)
 class TaskSize:
-    """How much can happen on a silhouette.
+    """Numbers of states and sequences of a silhouette.
 
     Attributes:
         states: different sets of filled cells that legal placements reach, the empty one included.
         complete_sequences: sequences of legal placements that end with the silhouette rebuilt.
-        sequences: sequences of legal placements that end where nothing legal is left, those that
-            rebuild the silhouette included.
+        sequences: sequences of legal placements that end when no legal placement is left, including
+            those that rebuild the silhouette.
     """
 
     states: int
@@ -72,7 +72,7 @@ def count_task(
 
 
 def _walk(task: Task, limit: int, cancel: CancelToken) -> Walks | None:
-    """The outlines of a task with the ways to each; None if cancelled."""
+    """The outlines of a task with the number of sequences to each; None if cancelled."""
     tables = tables_of(task, task.silhouette)
     region = pack([task.silhouette, 0], task.board.size)
     size, words = min(_AT_FIRST, limit), 1
@@ -95,7 +95,7 @@ def _walk(task: Task, limit: int, cancel: CancelToken) -> Walks | None:
 
 
 def _find(walks: Walks, task: Task, shadow: int) -> int | None:
-    """The number of an outline; None if nothing leads there."""
+    """The number of an outline; None if it is not reachable."""
     number = int(walks.first[shadow.bit_count()])
     wanted = pack([shadow], task.board.size)[0]
     while number >= 0 and not np.array_equal(walks.shadow[number], wanted):

@@ -1,11 +1,11 @@
-"""The yardstick: fewest blocks, number of arrangements, and proof that there are none.
+"""The exact search: fewest blocks, number of arrangements, or proof that there are none.
 
-No order of placing has to be searched. A set of placed rectangles can be built in some order
-exactly if it tiles the region and every rectangle stands on the ground or on at least one filled
-cell: placed by rising bottom row, each comes to rest where it belongs. So it is a minimum exact
-cover, and a dynamic program that always fills the first empty cell, row by row from the left,
-solves it. Where it passes the end of row k, the state in which just rows(k) is filled answers for
-the region rows(k).
+The order of placing need not be searched. A set of placed rectangles can be built in some order if
+and only if it tiles the region and every rectangle rests on the ground or on at least one filled
+cell: placed by rising bottom row, each comes to rest in its place. So the problem is a minimum
+    exact cover, and a dynamic program that always fills the first empty cell, row by row from the
+    left, solves it. At the end of row k, the state in which exactly rows(k) is filled gives the
+    answer for the region rows(k).
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ from blocks_planning.search.kernels.tiling import (
 from blocks_planning.search.result import CancelToken, Problem, SolveResult, SolveStatus
 
 MAX_STATES = 20_000_000
-"""Most states that the dynamic program stores, over all cells (about 1 GB)."""
+"""Largest number of states that the dynamic program stores, over all cells (about 1 GB)."""
 
 
 @dataclass(frozen=True)
 class ExactAnswer:
-    """What is true of a silhouette and a library.
+    """Exact properties of a silhouette and a library.
 
     Attributes:
-        fewest_blocks: that rebuild the silhouette; None if nothing does.
+        fewest_blocks: that rebuild the silhouette; None if it cannot be rebuilt.
         arrangements: number of different sets of placed blocks that rebuild it.
         optimal_arrangements: number of those that have ``fewest_blocks`` blocks.
         by_rows: fewest blocks for the regions rows(1) to rows(height).
-        placements: one way with fewest blocks, in an order in which it can be built.
+        placements: a plan with the fewest blocks, in an order in which it can be built.
     """
 
     fewest_blocks: int | None
@@ -58,11 +58,11 @@ class ExactAnswer:
 
 
 class _Cancelled(Exception):
-    """The token was used."""
+    """The token was cancelled."""
 
 
 class _CountOverflow(Exception):
-    """Arrangements need more words."""
+    """The number of arrangements needs more words."""
 
 
 def analyse(
@@ -73,10 +73,10 @@ def analyse(
     Args:
         task: silhouette and blocks.
         cancel: ends it from another thread.
-        gauge: is told how far it is; a step is a cell.
+        gauge: shows the progress; a step is a cell.
 
     Raises:
-        LimitExceeded: if more than ``MAX_STATES`` states would be stored; nothing else ends it.
+        LimitExceeded: if more than ``MAX_STATES`` states would be stored.
     """
     problem = Problem(task, 0, task.silhouette)
     words = 1
@@ -100,7 +100,7 @@ def analyse(
 
 
 def solve_exactly(problem: Problem, cancel: CancelToken) -> SolveResult:
-    """Fill the region with the fewest blocks, or prove that there is no way.
+    """Fill the region with the fewest blocks, or prove that it cannot be filled.
 
     Raises:
         LimitExceeded: see :func:`analyse`.
@@ -193,7 +193,7 @@ class _Program:
                     yield cells, index * board.size + board.bit(*cell)
 
     def _keep_answer(self, height: int, layer: Layer) -> None:
-        """Note what is known of the rows below a height."""
+        """Store the answer for the rows below a height."""
         region = self._problem.region & self._board.rows_below(height) | self._problem.built
         same = layer.filled == pack([region], self._board.size)[0]
         for state in np.flatnonzero(same if same.ndim == 1 else same.all(axis=1)):
@@ -208,7 +208,7 @@ class _Program:
         return self._answers.get(height, (None, 0, 0))
 
     def placements(self) -> tuple[Placed, ...]:
-        """A way to fill the region with fewest blocks, by rising bottom row."""
+        """A plan with the fewest blocks, by rising bottom row."""
         moves = []
         state = 0  # the last layer has one state: the region
         for parent, move in reversed(self._ways):
@@ -226,7 +226,7 @@ class _Program:
 
 
 def _count_of(words: np.ndarray) -> int:
-    """The number that some words stand for, the lowest first."""
+    """The number that some words represent, the lowest first."""
     return sum(word << WORD_BITS * index for index, word in enumerate(words.tolist()))
 
 
@@ -237,7 +237,7 @@ def _fits(board: Board, placed: Placed) -> bool:
 
 
 def _is_supported(board: Board, placed: Placed, region: Mask) -> bool:
-    """Whether a placed block stands on the ground or, once all is built, on a filled cell."""
+    """Whether a placed block rests on the ground or, in the complete region, on a filled cell."""
     if placed.row == 0:
         return True
     return bool(board.rectangle(placed.column, placed.row - 1, placed.width, 1) & region)

@@ -1,4 +1,4 @@
-"""How far a computation is."""
+"""The progress of a computation."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 @dataclass
 class Gauge:
-    """How far a computation is: written by its thread, read by any other at any time.
+    """The progress of a computation: written by its thread, read by any thread at any time.
 
     Attributes:
-        done: steps that are finished.
-        total: steps in all; 0 as long as it is not known.
-        states: states stored or looked at so far [states].
+        done: number of finished steps.
+        total: number of all steps; 0 while it is unknown.
+        states: states stored or examined so far [states].
     """
 
     done: int = 0

@@ -1,4 +1,4 @@
-"""What one order does in a world of chance: a pure function of seed and sequence."""
+"""The outcome of an order in a random world: a pure function of seed and sequence."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from blocks_planning.board.slipping import Landing, landings, pick
 from blocks_planning.search.randomness import Generator
 
 WORLD = int.from_bytes(b'world', 'little')
-"""The word that sets the generator of a world apart from those of planners."""
+"""A constant that separates the generator of a world from those of planners."""
 
 
 def draw_landing(
@@ -22,7 +22,7 @@ def draw_landing(
 ) -> Landing:
     """Draw the outcome of an order, from a generator made of (seed, sequence, a constant).
 
-    It is the same after a restart, in any process and in any order of asking.
+    The outcome is the same after a restart, in any process and in any order of calls.
 
     Args:
         board: size of the board.

@@ -1,8 +1,8 @@
 """Natural logarithms that are the same on every machine.
 
-The last bit of a library's ``log`` differs between machines, and a search whose choices hang on
-it would give other results there. These are made of sums, products and quotients of float64, which
-IEEE 754 defines to the last bit.
+The last bit of a library's ``log`` differs between machines, and so would the results of a search
+whose choices depend on it. These logarithms are computed from sums, products and quotients of
+float64, which IEEE 754 defines to the last bit.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _LAST = 35
 
 @lru_cache(maxsize=4)
 def natural(most: int) -> np.ndarray:
-    """The logarithms of 0 to ``most``, float64 (most + 1,), that of 0 being 0.
+    """The logarithms of 0 to ``most``, float64 (most + 1,), with 0 for that of 0.
 
     With n = m * 2**e and 1 <= m < 2, and s = (m - 1) / (m + 1), it is
     e ln 2 + 2 s (1 + s**2 / 3 + s**4 / 5 + ... + s**34 / 35), the sum by Horner's rule.

@@ -1,10 +1,10 @@
-"""Many solves at once: equal ones shared, on all cores.
+"""Many solves at once: equal ones are shared, and all cores are used.
 
-A decision that weighs hundreds of regions, or sequences of them, asks for many solves, and each is
-a pure function of its problem, search, seed and budget. So equal problems are solved once, and the
-others are handed in portions to threads, which solve a portion in one compiled call without the
-GIL. A search that is not compiled (``exact``, plug-ins) is run problem by problem in the same
-threads.
+A decision that weighs hundreds of regions, or sequences of them, needs many solves, and each is a
+pure function of its problem, search, seed and budget. So equal problems are solved once, and the
+others are distributed in portions to threads. A thread solves a portion in one compiled call
+without the GIL. Searches that are not compiled (``exact``, plug-ins) solve problem by problem in
+the same threads.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from blocks_planning.search.solve import solve
 from blocks_planning.settings import check_whole
 
 Done = Callable[[int, SolveResult], None]
-"""Told of each result as it comes, by the index of its problem, in the caller's thread."""
+"""Called in the caller's thread with each new result and the index of its problem."""
 
 _LARGEST_PORTION = 64
 _PORTIONS_PER_WORKER = 8
@@ -55,11 +55,12 @@ def solve_many(
         search: the action-level search of each attempt.
         seed: of the trial, 0 to 2**64 - 1.
         budget: b of each problem [states], 0 to 2**63 - 1.
-        cancel: ends it from another thread within 0.1 s: what is not solved by then is
-            ``cancelled``.
-        done: is told of every result as it comes. What it raises ends the work, and is raised.
-        workers: threads; as many as there are cores for this process if left out. With 1 all is
-            done in the caller's thread.
+        cancel: ends it from another thread within 0.1 s; problems that are not solved by then
+            are ``cancelled``.
+        done: called with every result when it is known. An exception that it raises ends the work
+            and is passed on.
+        workers: number of threads; by default the number of cores for this process. With 1, the
+            caller's thread does all the work.
 
     Returns:
         The results in the order of the problems.
@@ -137,7 +138,7 @@ class _Work:
             thread.result()
 
     def _hand_over(self, finished: queue.SimpleQueue[Solved | None]) -> None:
-        """Solve portions in a thread until none is left; then say so, whatever happened."""
+        """Solve portions in a thread until none is left; report the end, even after an error."""
         try:
             for solved in self._solve_portions():
                 finished.put(solved)
@@ -161,7 +162,7 @@ class _Work:
             return None if self._stop[0] else next(self._portions, None)
 
     def _solver_of(self, task: Task) -> Callable[[list[Problem]], Solved]:
-        """How problems of a task are solved in one thread."""
+        """The function that solves problems of a task in one thread."""
         if not isinstance(self._search, Compiled):
             return self._solve_one_by_one
         from blocks_planning.search.compiled import Solver
@@ -194,14 +195,14 @@ class _Work:
 
 
 def _left(problem: Problem) -> int:
-    """Cells to be filled."""
+    """Number of cells to fill."""
     return area(problem.region) - area(problem.built)
 
 
 def _by_task(problems: Sequence[Problem]) -> list[list[Problem]]:
-    """The problems of each task, those with most cells to be filled first.
+    """The problems of each task, those with most cells to fill first.
 
-    They take longest, and at the end would keep a single thread busy.
+    They take longest, and at the end would keep only one thread busy.
     """
     groups: dict[Task, list[Problem]] = {}
     for problem in problems:
@@ -210,7 +211,7 @@ def _by_task(problems: Sequence[Problem]) -> list[list[Problem]]:
 
 
 def _portions(problems: list[Problem], workers: int) -> Iterator[list[Problem]]:
-    """Parts of a list, small enough for every worker to get several, and to hear of progress."""
+    """Parts of a list, so small that every worker gets several, and progress is visible."""
     size = min(-(-len(problems) // (_PORTIONS_PER_WORKER * workers)), _LARGEST_PORTION)
     for start in range(0, len(problems), size):
         yield problems[start : start + size]

@@ -1,8 +1,8 @@
-"""The memory of the compiled searches, made anew for each thread.
+"""The memory of the compiled searches, allocated for each thread.
 
-Where a search keeps nodes, it is given room for some, and asked again with ``growth`` raised by
-one if they were too few; each step gives four times as many. Memory that is not touched is not
-taken from the machine.
+A search that stores nodes first gets room for a few. If they are not enough, the function is called
+again with ``growth`` raised by one; each step gives four times as many nodes. Memory that is never
+touched is not taken from the machine.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ _NODES_PER_ITERATION = 64
 _MOST_NODES_AT_FIRST = 1 << 20
 _GROWTH = 4
 MAX_NODES = 1 << 27
-"""Most nodes in the queue of a best-first search, 8 bytes each."""
+"""Largest number of nodes in the queue of a best-first search, 8 bytes each."""
 MAX_BEAM_NODES = 1 << 24
-"""Most states kept by a beam search on all levels together, up to 48 bytes each."""
+"""Largest number of states kept by a beam search, all levels together, up to 48 bytes each."""
 MAX_TREE_NODES = 1 << 24
-"""Most nodes of a Monte Carlo tree, up to 64 bytes each."""
+"""Largest number of nodes of a Monte Carlo tree, up to 64 bytes each."""
 
 
 def at_random(tables: Tables) -> Any:
-    """Of random placement."""
+    """The memory of random placement."""
     return random_placement.make_search(tables)
 
 
 def breadth_first(tables: Tables, depth: int, dead_ends_last: bool) -> Any:
-    """Of breadth-first lookahead."""
+    """The memory of breadth-first lookahead."""
     return lookahead.make_search(tables, depth, dead_ends_last)
 
 
@@ -53,13 +53,13 @@ def queue(
     divisor: float,
     whole_path: bool,
 ) -> Any:
-    """Of A* and best-first search: f = g_weight * blocks placed + cells left / divisor.
+    """The memory of A* and best-first search: f = g_weight * blocks placed + cells left / divisor.
 
     Args:
         tables: of the task.
-        most_left: cells to be filled, or more.
-        growth: how often the queue has been too small.
-        iterations: nodes taken in one search.
+        most_left: upper bound of the number of cells to fill.
+        growth: number of times that the queue was too small.
+        iterations: number of nodes taken in one search.
         g_weight: 1 or 0.
         divisor: [cells].
         whole_path: whether the whole path of a search is executed.
@@ -80,7 +80,7 @@ def queue(
 
 
 def kept_states(tables: Tables, most_left: int, growth: int, width: int) -> Any:
-    """Of beam search; the arguments are those of :func:`queue`.
+    """The memory of beam search; the arguments are those of :func:`queue`.
 
     Raises:
         LimitExceeded: if too many states would be kept.
@@ -97,7 +97,7 @@ def kept_states(tables: Tables, most_left: int, growth: int, width: int) -> Any:
 
 
 def tree(tables: Tables, growth: int, iterations: int, exploration: float) -> Any:
-    """Of Monte Carlo tree search; the arguments are those of :func:`queue`.
+    """The memory of Monte Carlo tree search; the arguments are those of :func:`queue`.
 
     Raises:
         LimitExceeded: if the tree would be too large.
@@ -115,10 +115,10 @@ def tree(tables: Tables, growth: int, iterations: int, exploration: float) -> An
 
 
 def _room(first: int, growth: int, most: int, what: str, remedy: str) -> int:
-    """Number of nodes after so many steps of growth."""
+    """Number of nodes after ``growth`` steps."""
     nodes = first * int(_GROWTH**growth)
     if growth > 0 and nodes > most:
-        raise LimitExceeded(f'{what} outgrows {nodes // _GROWTH} nodes; {remedy}')
+        raise LimitExceeded(f'{what} exceeds {nodes // _GROWTH} nodes; {remedy}')
     return nodes
 
 
@@ -127,7 +127,7 @@ def _buckets(most_blocks: int, most_left: int, g_weight: int, divisor: float) ->
     """The rank of f, from 0, by blocks placed and cells left: int64 (blocks + 1, left + 1).
 
     f is the float64 that the formula gives. Values that are equal as fractions can differ in
-    their last bit, and then are not equal.
+    the last bit, and then they are not equal.
     """
     placed, left = np.indices((most_blocks + 1, most_left + 1))
     f = g_weight * placed + left / divisor

@@ -1,16 +1,16 @@
-"""What an action-level search achieves, without sampling.
+"""The exact success and cost of an action-level search, without sampling.
 
-One attempt of ``bfs`` or ``random`` is a walk: in every state it evaluates a number of states
-that depends on nothing else, and places one of some blocks with known probabilities (for bfs
+One attempt of ``bfs`` or ``random`` is a random walk: in every state it evaluates a number of
+states that depends only on that state, and chooses a placement with known probabilities (for bfs
 the share of best tree nodes behind each first placement). A dynamic program over the states that
-the walk can reach, by rising number of filled cells, therefore gives the distribution of what an
-attempt costs and whether it succeeds. States with the same shadow and
-equally many filled cells go on in the same way and are one.
+the walk can reach, by rising number of filled cells, therefore gives the joint distribution of cost
+and success of an attempt. States with the same shadow and equally many filled cells have the same
+continuations and are merged.
 
-Probabilities are float64 sums of products: exact but for rounding, about 1e-12. Costs are kept
-to the single state [states]; those at or above the budget are put together, as they end a solve
-alike. How many attempts follow one another within the budget is a renewal sum over the costs of
-attempts that fail, done by fast Fourier transforms, which adds rounding of about 1e-12.
+Probabilities are float64 sums of products: exact except for rounding, about 1e-12. Costs are
+distinguished to the single state [states]; costs at or above the budget are merged, because all of
+them end a solve. The number of attempts within the budget follows from a renewal sum over the costs
+of failed attempts, computed with fast Fourier transforms, which adds rounding of about 1e-12.
 """
 
 from __future__ import annotations
@@ -37,16 +37,16 @@ from blocks_planning.search.searches import BreadthFirst, RandomPlacement, Searc
 from blocks_planning.settings import check_whole
 
 MAX_STATES = 2_000_000
-"""Most states that the dynamic program looks at, unless told otherwise."""
+"""Default of the largest number of states that the dynamic program examines."""
 MAX_COSTS = 40_000_000
-"""Most costs that are kept at a time, over all states, 16 bytes each: 640 MB."""
+"""Largest number of costs stored at a time, over all states, 16 bytes each: 640 MB."""
 MAX_EXACT_BUDGET = 10_000_000
-"""Largest budget for which costs are kept to the single state [states]."""
+"""Largest budget for which costs are distinguished to the single state [states]."""
 
 
 @dataclass(frozen=True)
 class ExactPolicy:
-    """What is true of a search on a problem.
+    """Exact values of a search on a problem.
 
     Attributes:
         success: probability that one attempt fills the region.
@@ -54,7 +54,7 @@ class ExactPolicy:
         cost_of_success: expected cost of an attempt that succeeds [states]; None if none can.
         within_budget: probability that a solve succeeds, attempt after attempt, within ``budget``.
         budget: b [states].
-        states: number of states that the dynamic program looked at.
+        states: number of states that the dynamic program examined.
     """
 
     success: float
@@ -79,14 +79,14 @@ def analyse_policy(
         problem: state and region.
         search: bfs or random.
         budget: b [states].
-        limit: most states that the dynamic program looks at.
+        limit: largest number of states that the dynamic program examines.
         cancel: ends it from another thread.
-        gauge: is told how far it is; a step is a number of filled cells.
+        gauge: shows the progress; a step is a number of filled cells.
 
     Raises:
         ConfigurationError: for another search, or a budget out of its range.
         LimitExceeded: if more states can be reached than ``limit``, or more than ``MAX_COSTS``
-            costs would have to be kept at a time.
+            costs would have to be stored at a time.
     """
     cancel, gauge = cancel or CancelToken(), gauge or Gauge()
     gauge.total = area(problem.region) - area(problem.built)
@@ -118,9 +118,9 @@ def analyse_policy(
 def _analyse_random(
     problem: Problem, budget: int, limit: int, cancel: CancelToken, gauge: Gauge
 ) -> ExactPolicy | None:
-    """Random placement costs nothing, so that only its success is to be found.
+    """The success of random placement, whose cost is 0.
 
-    It takes states from which the region can still be filled, many at a time.
+    Only states from which the region can still be filled are expanded, many at a time.
     """
     layers = {area(problem.built): [layer_of(problem)]}
     target = area(problem.region)
@@ -162,7 +162,7 @@ def _too_many_costs(problem: Problem, name: str) -> LimitExceeded:
     board = problem.task.board
     return LimitExceeded(
         f'exact-policy: {name} on this silhouette of {board.width} x {board.height} cells needs '
-        f'to keep more than the limit of {MAX_COSTS} costs; a smaller budget needs fewer'
+        f'to store more than the limit of {MAX_COSTS} costs; use a smaller budget'
     )
 
 
@@ -221,7 +221,7 @@ class _Program:
         arrivals: Arrivals,
         layers: dict[int, dict[int, Arrivals]],
     ) -> bool:
-        """Hand what arrived in a state on to those after it; False if cancelled."""
+        """Pass the probabilities of a state on to its successors; False if cancelled."""
         choices = chooser.choices(shadow, filled)
         if choices is None:
             return False

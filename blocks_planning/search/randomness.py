@@ -1,13 +1,13 @@
-"""The generator that breaks ties, made of nothing but the question it serves.
+"""The generator that breaks ties; its seed depends only on the question.
 
-Attempt ``a`` of filling a region from a state under trial seed ``s`` draws from a generator made
-of exactly (s, state, region, a); a tie between subgoals from (s, state). So a solve is a pure
-function of its arguments, on every machine and with every version of numpy, whose own streams
-may change between versions.
+Attempt ``a`` of filling a region from a state under trial seed ``s`` draws from a generator seeded
+with (s, state, region, a); a tie between subgoals from (s, state). So a solve is a pure
+function of its arguments, on every machine and with every version of numpy (numpy's own streams
+can change between versions).
 
-The generator is SplitMix64 (Steele, Lea and Flood, 2014). Its key starts at 0 and takes in one
+The generator is SplitMix64 (Steele, Lea and Flood, 2014). Its key starts at 0 and absorbs one
 64-bit word after the other, ``key = mix((key ^ word) + GAMMA)``; a draw adds GAMMA to the key
-and mixes. Masks are taken in as four little-endian words. The compiled twin is in
+and mixes. Masks are absorbed as four little-endian words. The compiled twin is in
 :mod:`.kernels.randomness`.
 """
 
@@ -45,7 +45,7 @@ class Generator:
     """
 
     def __init__(self, words: Iterable[int]) -> None:
-        """Make the generator of some 64-bit words; their number counts too."""
+        """Seed the generator with some 64-bit words; their number matters too."""
         self._key = 0
         for word in words:
             self._key = mix((self._key ^ word) + GAMMA & _WORD)

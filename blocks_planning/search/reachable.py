@@ -1,4 +1,4 @@
-"""The states from which a region can still be filled: found once, then asked by number."""
+"""The states from which a region can still be filled: found once, then addressed by number."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from blocks_planning.search.kernels.states import DEAD, Space, expand, fill_slot
 from blocks_planning.search.result import CancelToken, Problem
 
 MAX_STATES = 2_000_000
-"""Most states that are kept, unless told otherwise: about 0.4 GB at six slips."""
+"""Default of the largest number of stored states: about 0.4 GB at six slips."""
 _STATES_PER_STEP = 50_000
 _STATES_AT_FIRST = 1 << 14
 
 Report = Callable[[str, int, int], None]
-"""Is told what is being done, how many states of it are done, and how many are known of."""
+"""Called with the name of the stage, the number of finished states, and that of known states."""
 
 
 def say_nothing(stage: str, done: int, known: int) -> None:
-    """Report to nobody."""
+    """Report no progress."""
 
 
 class Reachable:
@@ -39,7 +39,7 @@ class Reachable:
     """
 
     def __init__(self, problem: Problem, space: Space) -> None:
-        """Take a space in which every state has been looked at."""
+        """Use a space in which every state has been expanded."""
         self.problem = problem
         self.space = space
         count = self.count
@@ -51,7 +51,7 @@ class Reachable:
 
     @property
     def count(self) -> int:
-        """Numbers in use: the states, and 0 for those that are not alive."""
+        """Number of used numbers: those of the states, and 0 for states that are not alive."""
         return int(self.space.used[0])
 
     def number(self, built: Mask) -> int:
@@ -73,10 +73,10 @@ def find_reachable(
 
     Args:
         problem: state and region.
-        limit: most states to keep; they take about 20 bytes each, and 16 more for every slip
-            that is analysed on them.
+        limit: largest number of states; each takes about 20 bytes, and 16 more for every slip
+            that is analysed.
         cancel: ends it from another thread.
-        report: is told how far it is.
+        report: called with the progress.
 
     Raises:
         LimitExceeded: if there are more states than ``limit``.

@@ -1,4 +1,4 @@
-"""What a solve is asked, what it answers, and how it is told to stop."""
+"""The problem of a solve, its result, and its cancellation."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ MAX_BUDGET = (1 << 63) - 1
 class SolveStatus(str, Enum):
     """How a solve ended.
 
-    ``limit_exceeded`` says that the search would have outgrown its memory, so that nothing is
-    known of the region.
+    ``limit_exceeded``: the search would have exceeded its memory limit, so it is unknown whether
+    the region can be filled.
     """
 
     SOLVED = 'solved'
@@ -36,7 +36,7 @@ class Problem:
     """Fill ``region``, and nothing else, from the state in which ``built`` is filled.
 
     Raises:
-        InvalidInput: if the region has cells off the board, or does not contain what is built.
+        InvalidInput: if the region has cells off the board, or does not contain the built cells.
     """
 
     task: Task
@@ -48,13 +48,13 @@ class Problem:
             raise InvalidInput(f'region {self.region:#x} has cells off the board')
         if self.built & ~self.region or self.built < 0:
             raise InvalidInput(
-                f'region {self.region:#x} must contain what is built, {self.built:#x}'
+                f'region {self.region:#x} must contain the built cells {self.built:#x}'
             )
 
 
 @dataclass(frozen=True)
 class SolveResult:
-    """The answer of a solve. Costs are states evaluated, as the search defines them.
+    """The result of a solve. Costs are states evaluated, as the search defines them.
 
     Attributes:
         status: how it ended; only ``solved`` comes with placements (or with none needed).
@@ -62,7 +62,7 @@ class SolveResult:
         solution_cost: states evaluated in the attempt that succeeded; 0 if none did.
         planning_cost: states evaluated in all attempts.
         attempts: number of attempts made; 0 where no search was needed.
-        last_attempt: placements of the last attempt, where none succeeded: as far as it came.
+        last_attempt: placements of the last attempt if none succeeded, as far as it came.
     """
 
     status: SolveStatus
@@ -74,20 +74,20 @@ class SolveResult:
 
     @property
     def plan(self) -> tuple[Placed, ...]:
-        """What there is to carry out: the way to the filled region, else the last attempt."""
+        """The placements to carry out: those that fill the region, otherwise the last attempt."""
         return self.placements if self.solved else self.last_attempt
 
     @property
     def solved(self) -> bool:
-        """Whether the region gets filled."""
+        """Whether the placements fill the region."""
         return self.status is SolveStatus.SOLVED
 
 
 class CancelToken:
-    """Tells running solves to stop, from any thread."""
+    """Stops running solves, from any thread."""
 
     def __init__(self) -> None:
-        """A token that has not been used."""
+        """Create a token that is not cancelled."""
         self.flag = np.zeros(1, np.uint8)
 
     def cancel(self) -> None:

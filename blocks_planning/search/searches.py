@@ -33,22 +33,22 @@ class Search(Protocol):
         """Solve a problem within a budget [states].
 
         Raises:
-            LimitExceeded: if the search would outgrow its memory.
+            LimitExceeded: if the search would exceed its memory limit.
         """
         ...
 
 
 class Compiled(Configured):
-    """Base of the searches whose attempts are compiled: they differ in their memory."""
+    """Base of the searches with compiled attempts: they differ in their memory."""
 
     def memory(self, task: Task, tables: Any, most_left: int, growth: int) -> Any:
-        """The memory of the search for problems of a task; its type says which search it is.
+        """The memory of the search for problems of a task; its type selects the compiled search.
 
         Args:
             task: the task.
             tables: of the task.
             most_left: most cells that are to be filled.
-            growth: how often it has been too small; see :mod:`.memory`.
+            growth: how often the memory was too small so far; see :mod:`.memory`.
 
         Raises:
             LimitExceeded: if it would be too large.
@@ -64,7 +64,7 @@ class Compiled(Configured):
 
 @dataclass(frozen=True)
 class RandomPlacement(Compiled):
-    """A legal placement, uniformly, until none is left. Cost 0."""
+    """Uniformly drawn legal placements, until none is left. Cost 0."""
 
     name: ClassVar[str] = 'random'
 
@@ -80,18 +80,20 @@ class BreadthFirst(Compiled):
     """Breadth-first lookahead of ``depth`` placements (paper, section "Action-level planning").
 
     It executes the first placement towards the best state seen, uniformly among equals, and
-    looks again; a complete state that is taken up for expansion is built whole. More filled cells
-    are better. A state without a legal placement is 'worst' of all (the published numbers), which
-    takes a look one level beyond ``depth`` that is not counted; or such dead ends are 'ignored',
-    so that the filled cells alone decide (the paper's text).
+    searches again; when a complete state is taken for expansion, its whole path is executed. More
+    filled cells are better. A state without a legal placement is 'worst' of all (the published
+    numbers); this needs one more level beyond ``depth``, which is not counted; or such dead ends
+    are 'ignored', so that the filled cells alone decide (the paper's text).
     """
 
     name: ClassVar[str] = 'bfs'
     depth: int = setting(
-        3, 'Placements that the search looks ahead.', least=1, most=MAX_DEPTH, unit='placements'
+        3, 'Number of placements to look ahead.', least=1, most=MAX_DEPTH, unit='placements'
     )
     dead_ends: str = setting(
-        'worst', 'How a state without a legal placement is ranked.', choices=DEAD_ENDS
+        'worst',
+        'Rank of a state without a legal placement: below all others, or by filled cells.',
+        choices=DEAD_ENDS,
     )
 
     @property
@@ -109,7 +111,7 @@ class BreadthFirst(Compiled):
 def _iterations() -> Any:
     return setting(
         4096,
-        'Nodes taken from the queue in one search.',
+        'Number of nodes taken from the queue in one search.',
         least=2,
         most=MAX_ITERATIONS,
         unit='nodes',
@@ -117,28 +119,28 @@ def _iterations() -> Any:
 
 
 def _execute() -> Any:
-    return setting(
-        'first', 'Placements executed of a path that is not complete.', choices=EXECUTIONS
-    )
+    return setting('first', 'Part of an incomplete path that is executed.', choices=EXECUTIONS)
 
 
 @dataclass(frozen=True)
 class AStar(Compiled):
-    """A* for some iterations; f = blocks placed + cells left / divisor.
+    """A* with a limited number of iterations; f = blocks placed + cells left / divisor.
 
     The divisor is the 'smallest' block area (the paper's text), the 'mean' (its published numbers)
     or the 'largest' (admissible). A search that did not complete executes the 'first' placement
     of its path (the paper's text) or the whole 'path' (its published numbers).
 
     f is a float64, as in the paper's own program, and nodes are equal if their f is. With the
-    mean divisor 4.8 some values that are equal as fractions differ in the last bit, which the
-    results show.
+    mean divisor 4.8 some values that are equal as fractions differ in the last bit, which
+    affects the results.
     """
 
     name: ClassVar[str] = 'astar'
     iterations: int = _iterations()
     divisor: str = setting(
-        'smallest', 'Block area that divides the cells left in the heuristic.', choices=DIVISORS
+        'smallest',
+        'Block area by which the heuristic divides the number of cells left.',
+        choices=DIVISORS,
     )
     execute: str = _execute()
 
@@ -159,7 +161,7 @@ class AStar(Compiled):
 
 @dataclass(frozen=True)
 class BestFirst(Compiled):
-    """A* with the blocks placed left out: the fewest cells left come first."""
+    """A* without the blocks placed: the node with the fewest cells left comes first."""
 
     name: ClassVar[str] = 'best_first'
     iterations: int = _iterations()
@@ -177,7 +179,7 @@ class BestFirst(Compiled):
 class Beam(Compiled):
     """Beam search: level by level, the ``width`` states with most cells filled are kept.
 
-    One search is an attempt. It begins with the state at hand. On each level it generates and
+    One search is an attempt. It begins with the current state. On each level it generates and
     counts every child of every state kept, in the order in which those were generated. It keeps
     the ``width`` children with most filled cells; of those that tie for the last places it keeps
     some uniformly drawn ones. Two orders of the same blocks are two states. It stops after a level
@@ -185,13 +187,15 @@ class Beam(Compiled):
     kept state with most filled cells of all levels, uniformly among equals, and is executed whole;
     if that is not complete, nothing legal is left in it.
 
-    Draws: on each level where not all equals can be kept, one for each of them in the order of
-    generation until as many are kept as there are places, keeping it if a number below those left
-    is below the places left; at the end one for the best state.
+    Draws: on each level where not all equals can be kept, one draw for each of them in the order of
+    generation, until no place is left: it is kept if a number drawn below the number of equals
+    left is below the number of places left. At the end, one draw for the best state.
     """
 
     name: ClassVar[str] = 'beam'
-    width: int = setting(100, 'States kept on each level.', least=1, most=MAX_WIDTH, unit='states')
+    width: int = setting(
+        100, 'Number of states kept on each level.', least=1, most=MAX_WIDTH, unit='states'
+    )
 
     def memory(self, task: Task, tables: Any, most_left: int, growth: int) -> Any:
         """See :class:`Compiled`."""
@@ -218,18 +222,20 @@ class TreeSearch(Compiled):
     reward. So an attempt makes one search for every block it places.
 
     States evaluated are those added to the tree and those of the placements that follow, in every
-    iteration. Draws: one for each choice named above, even among one.
+    iteration. Draws: one for each choice named above, even if there is only one option.
     """
 
     name: ClassVar[str] = 'mcts'
     iterations: int = setting(
         1000,
-        'Walks through the tree before a placement.',
+        'Number of walks through the tree before each placement.',
         least=1,
         most=MAX_ITERATIONS,
         unit='iterations',
     )
-    exploration: float = setting(0.5, 'Weight of trying what was tried less.', least=0, most=1000)
+    exploration: float = setting(
+        0.5, 'Weight of exploration in the upper confidence bound.', least=0, most=1000
+    )
 
     def memory(self, task: Task, tables: Any, most_left: int, growth: int) -> Any:
         """See :class:`Compiled`."""
@@ -240,7 +246,7 @@ class TreeSearch(Compiled):
 
 @dataclass(frozen=True)
 class Exact(Configured):
-    """The fewest blocks, or proof that there is no way. Not a model of people: the yardstick.
+    """The fewest blocks, or proof that there is no plan. A reference, not a model of people.
 
     Its cost is the number of states that its dynamic program generates by placing a block.
     """
@@ -248,7 +254,7 @@ class Exact(Configured):
     name: ClassVar[str] = 'exact'
 
     def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
-        """See :class:`Search`. The seed and the budget play no part.
+        """See :class:`Search`. The seed and the budget have no effect.
 
         Raises:
             LimitExceeded: if the problem is too large (see :mod:`.exact`).

@@ -1,14 +1,14 @@
 """Success in a world where blocks slip, without sampling: of the best policy, bfs and random.
 
-A policy orders a legal placement in every state, and the world answers as
-:func:`blocks_planning.board.slipping.landings` says. V(s) is the probability that the region is
+A policy orders a legal placement in every state, and the world responds according to
+:func:`blocks_planning.board.slipping.landings`. V(s) is the probability that the region is
 filled in the end: the largest, over legal placements a, of the sum of P(s'|s, a) V(s'); 1 where
 the region is filled, and 0 where it can't be filled any more. Blocks are only added, so one pass
-from the most filled state to the least is exact but for rounding (about 1e-12). An order that is
-lost is given again, so that losses change nothing.
+from the most filled state to the least is exact except for rounding (about 1e-12). A lost
+order is repeated, so losses change nothing.
 
 ``random`` orders a legal placement, uniformly. ``bfs`` looks ahead in every state and orders one
-first placement, as in :mod:`.policy`. Where it takes up a complete state it has a path: it orders
+first placement, as in :mod:`.policy`. When it expands a complete state it has a path: it orders
 the placements of the path until a block lands elsewhere, and then looks ahead again.
 """
 
@@ -60,7 +60,7 @@ class SlipChances:
 
 @dataclass(frozen=True)
 class OptimalValue:
-    """The best that any policy can reach: its success, and the number of states looked at."""
+    """The success of the best policy, and the number of examined states."""
 
     success: float
     states: int
@@ -74,7 +74,7 @@ class OptimalPolicy:
     """
 
     def __init__(self, reachable: Reachable, slip: float, values: np.ndarray) -> None:
-        """Take the chances of success by number of state, float64 (n,)."""
+        """Use the probabilities of success by number of state, float64 (n,)."""
         self._reachable = reachable
         self._slip = slip
         self.states = reachable.count - 1
@@ -85,7 +85,7 @@ class OptimalPolicy:
         return float(self._values[self._reachable.number(built)])
 
     def order(self, built: Mask) -> Placed | None:
-        """The placement to order: the first legal one among the best; None if none has a chance.
+        """The placement to order: the first legal one among the best; None if none can succeed.
 
         It is returned as it comes to rest if the block does not slip.
         """
@@ -161,10 +161,10 @@ def analyse_slips(
     Args:
         problem: state and region.
         slips: probabilities that a block lands one column off, at least one.
-        search: bfs with its depth; the default one if not given.
-        limit: most states to keep.
+        search: bfs with its depth; by default bfs with its default depth.
+        limit: largest number of states.
         cancel: ends it from another thread.
-        report: is told how far it is.
+        report: called with the progress.
 
     Raises:
         ConfigurationError: if a slip is not from 0 to 1.
@@ -217,7 +217,7 @@ def _breadth_first(
     cancel: CancelToken,
     report: Report,
 ) -> np.ndarray | None:
-    """The chances of bfs by state, float64 (n, slips); those that it can't come to have 0."""
+    """The chances of bfs by state, float64 (n, slips); 0 for states that it cannot reach."""
     plans = _plan(reachable, search, bool(slips.any()), cancel, report)
     if plans is None:
         return None
@@ -235,7 +235,7 @@ def _breadth_first(
 def _plan(
     reachable: Reachable, search: BreadthFirst, slipping: bool, cancel: CancelToken, report: Report
 ) -> Plans | None:
-    """What bfs does in every state that it can come to; None if cancelled."""
+    """The choices of bfs in every state that it can reach; None if cancelled."""
     count, tables = reachable.count, reachable.space.tables
     most = len(tables.area) * (len(reachable.space.child) - 2) + search.depth
     plans = Plans(
@@ -271,7 +271,7 @@ def _plan(
 
 
 def _only_complete(reachable: Reachable, slips: np.ndarray) -> np.ndarray:
-    """Chances by state before anything is known of them, float64 (n, slips)."""
+    """Initial chances by state, float64 (n, slips): 1 for the complete state, 0 for all others."""
     values = np.zeros((reachable.count, len(slips)))
     if reachable.complete:
         values[reachable.complete] = 1.0
@@ -285,7 +285,7 @@ def _in_steps(
     cancel: CancelToken,
     report: Report,
 ) -> bool:
-    """Go through an order a part at a time; False if cancelled."""
+    """Process an order in parts; False if cancelled."""
     done = 0
     while done < len(order):
         report(stage, done, len(order))

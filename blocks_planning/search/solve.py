@@ -1,4 +1,4 @@
-"""Solve: the one entrance to action-level search."""
+"""Solve: the entry point of action-level search."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def solve(
 ) -> SolveResult:
     """Fill a region from a state: attempts until one succeeds or the budget is reached.
 
-    The attempt that crosses the budget is finished, and there is always one, so that a budget of
-    0 asks for a single attempt. Where an attempt costs nothing (random) there are at most as many
-    as the budget has states. A pure function of its arguments, unless cancelled.
+    The attempt that crosses the budget is finished, and there is always at least one, so a budget
+    of 0 means a single attempt. Attempts without cost (random) are limited to the number of states
+    of the budget. A pure function of its arguments, unless cancelled.
 
     Args:
         problem: state and region.

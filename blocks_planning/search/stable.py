@@ -1,11 +1,11 @@
 """Searches that never plan a tower that falls: ``bfs`` and ``random`` with loose blocks.
 
-They generate only children that statics lets stand (:mod:`blocks_planning.board.statics`), and
-are otherwise the searches of :mod:`.searches`, draw for draw: where nothing falls, they give the
-same placements at the same cost. A state is a set of placed blocks here, not of cells, since two
-towers of the same cells can differ in whether they stand; so nothing is merged. Kernels can't ask
-a linear program, hence this is Python. It evaluates thousands of states in a second where the
-compiled searches evaluate tens of millions.
+They generate only stable children (:mod:`blocks_planning.board.statics`), and are otherwise equal
+to the searches of :mod:`.searches`, draw for draw: if no child falls, they give the same placements
+at the same cost. Here a state is a set of placed blocks, not of cells, because two towers with the
+same cells can differ in stability; so states are not merged. Kernels cannot call a linear program,
+therefore this module is Python. It evaluates thousands of states per second, whereas the compiled
+searches evaluate tens of millions.
 """
 
 from __future__ import annotations
@@ -31,18 +31,18 @@ from blocks_planning.search.searches import BreadthFirst, RandomPlacement, Searc
 from blocks_planning.settings import check_whole
 
 Stays = Callable[[tuple[Placed, ...]], bool]
-"""Whether a tower of these blocks stays up."""
+"""Decides whether a tower of these blocks is stable."""
 Path = tuple[Placed, ...]
 
 _DEAD_END = -1
 
 
 class _Cancelled(Exception):
-    """The token was used."""
+    """The token was cancelled."""
 
 
 class _Tower(NamedTuple):
-    """A state: what is filled, and by which blocks."""
+    """A state: the filled cells, and the blocks that fill them."""
 
     built: Mask
     blocks: Path
@@ -56,7 +56,7 @@ class _Node(NamedTuple):
 
 
 class _Choice(NamedTuple):
-    """What a search does next: placements (none if it is stuck), and states evaluated."""
+    """The next step of a search: placements (none if it is stuck), and states evaluated."""
 
     path: Path
     evaluated: int
@@ -71,10 +71,10 @@ def solve_stable(
     blocks: Path = (),
     stays: Stays = holds,
 ) -> SolveResult:
-    """Fill a region by placements after each of which the tower stays up.
+    """Fill a region by placements that keep the tower stable.
 
-    Attempts, budget and costs are those of :func:`.solve.solve`; the states that are generated,
-    and so evaluated, are those that stay up.
+    Attempts, budget and costs are those of :func:`.solve.solve`; only stable states are generated,
+    and so evaluated.
 
     Args:
         problem: state and region.
@@ -83,21 +83,23 @@ def solve_stable(
         budget: b [states], 0 to 2**63 - 1.
         cancel: ends the solve from another thread.
         blocks: the blocks that fill the problem's state.
-        stays: decides which towers stay up.
+        stays: decides which towers are stable.
 
     Raises:
         ConfigurationError: for another search, if the seed or the budget is out of its range, or
             if statics needs scipy and it is not installed.
-        InvalidInput: if ``blocks`` do not fill what is built.
+        InvalidInput: if ``blocks`` do not fill exactly the built cells.
     """
     check_whole('seed', seed, 0, MAX_SEED)
     check_whole('budget', budget, 0, MAX_BUDGET)
     if not isinstance(search, BreadthFirst | RandomPlacement):
-        raise ConfigurationError(f'stable must be used with bfs or random, got {search.name!r}')
+        raise ConfigurationError(
+            f'search must be bfs or random for loose blocks, got {search.name!r}'
+        )
     board = problem.task.board
     if sum(rules.cells_of(board, block) for block in blocks) != problem.built:
         raise InvalidInput(
-            f'blocks {[tuple(block) for block in blocks]} must fill exactly what is built, '
+            f'blocks {[tuple(block) for block in blocks]} must fill exactly the built cells '
             f'{problem.built:#x}'
         )
     finder = _Finder(problem, search, stays, cancel or CancelToken())
@@ -159,7 +161,7 @@ class _Finder:
         return True, path, cost
 
     def has_child(self, tower: _Tower) -> bool:
-        """Whether a legal placement is left after which the tower stays up."""
+        """Whether a legal placement is left that keeps the tower stable."""
         return next(self._children(tower), None) is not None
 
     def _choose(self, tower: _Tower, generator: Generator) -> _Choice:
@@ -190,13 +192,13 @@ class _Finder:
         return _Choice(winners[generator.below(len(winners))].path[:1], len(seen))
 
     def _value(self, tower: _Tower) -> int:
-        """Complete is best, a dead end worst, else the more cells the better."""
+        """The value: complete is best, a dead end worst, otherwise the number of cells."""
         if tower.built == self.problem.region:
             return self.problem.task.board.size + 1
         return area(tower.built) if self.has_child(tower) else _DEAD_END
 
     def _children(self, tower: _Tower) -> Iterator[tuple[Placed, _Tower]]:
-        """The legal placements after which the tower stays up, in order of generation."""
+        """The legal placements that keep the tower stable, in order of generation."""
         if self._cancel.cancelled:
             raise _Cancelled
         task = self.problem.task

@@ -1,10 +1,10 @@
-"""The number of states that can be reached, without visiting them.
+"""The number of reachable states, without visiting them.
 
-A set of filled cells can be reached exactly if it can be tiled by blocks each of which stands on the
-ground or on at least one filled cell (see :mod:`.exact`). The sets are counted cell by cell, row by
-row from the left: what matters of the cells decided so far is which of the last row are filled, and
-all sets of cells further on that a tiling of them may have claimed. Many sets of filled cells have
-this in common, and are counted together. Each set is counted once, however many tilings it has.
+A set of filled cells is reachable if and only if it can be tiled by blocks each of which rests on
+the ground or on at least one filled cell (see :mod:`.exact`). The sets are counted cell by cell,
+row by row from the left. The continuations depend only on which cells of the last row are filled,
+and on the sets of later cells that a tiling may already cover: the *profile*. Sets of filled cells
+with the same profile are counted together. Each set is counted once, however many tilings it has.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from blocks_planning.errors import LimitExceeded
 from blocks_planning.search.result import CancelToken
 
 MAX_PROFILES = 500_000
-"""Most profiles that are kept at one cell."""
+"""Largest number of profiles stored at one cell."""
 _CHECK_EVERY = 1024
 
 
 class Profile(NamedTuple):
-    """What filled cells have in common as far as the cells that follow are concerned."""
+    """The properties of filled cells that determine how they can be continued."""
 
     below: Mask  # filled cells of this row and the row below
-    claims: frozenset[Mask]  # cells not yet decided that blocks reach into, in every tiling
+    claims: frozenset[Mask]  # undecided cells that blocks cover, for every tiling
 
 
 class _Rectangle(NamedTuple):
@@ -44,7 +44,7 @@ def count_states(
     The empty board is one of them.
 
     Raises:
-        LimitExceeded: if more than ``limit`` profiles would be kept.
+        LimitExceeded: if more than ``limit`` profiles would be stored.
     """
     board, cancel = task.board, cancel or CancelToken()
     counts: _Counts = {Profile(0, frozenset([0])): 1}
@@ -66,7 +66,7 @@ def count_states(
 
 
 def _rectangles(task: Task, column: int, row: int) -> list[_Rectangle]:
-    """The blocks that may lie with their lower left cell at a place."""
+    """The blocks that can have their lower left cell at a place."""
     board, found = task.board, []
     for width, height in task.library:
         if column + width > board.width or row + height > board.height:
@@ -81,7 +81,7 @@ def _rectangles(task: Task, column: int, row: int) -> list[_Rectangle]:
 def _decide(
     counts: _Counts, cell: Mask, rectangles: list[_Rectangle], cancel: CancelToken
 ) -> _Counts | None:
-    """The profiles after a cell, which is filled or not; None if cancelled."""
+    """The profiles after a cell, filled or empty; None if cancelled."""
     following: _Counts = {}
     for index, ((below, claims), number) in enumerate(counts.items()):
         if index % _CHECK_EVERY == 0 and cancel.cancelled:
@@ -98,7 +98,7 @@ def _decide(
 
 
 def _forget_below(counts: _Counts, board: Board, row: int) -> _Counts:
-    """The profiles with no more than the filled cells of a row, which is finished."""
+    """The profiles after a finished row, reduced to the filled cells of that row."""
     this_row = board.rectangle(0, row, board.width, 1)
     following: _Counts = {}
     for (below, claims), number in counts.items():

@@ -49,7 +49,7 @@ class Kernels:
 
     def _compile(self, search: Search, board: Board) -> None:
         began_s = time.monotonic()
-        self._report(f'compiling {search.name}, which takes a while after a first start')
+        self._report(f'compiling {search.name}; this takes a while after the first start')
         self.compiling = True
         try:
             compile_for(search, board)

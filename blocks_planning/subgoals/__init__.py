@@ -1,1 +1,1 @@
-"""Subgoal-level planners: which part of the silhouette to build next."""
+"""Subgoal planners: they choose the part of the silhouette to build next."""

@@ -1,8 +1,8 @@
-"""What a planner aims at once a perfect reconstruction is out of reach.
+"""What a planner aims at when a perfect reconstruction has become impossible.
 
 A cell filled outside the silhouette, or a target cell that a block covers, makes a perfect
 reconstruction impossible. With aim ``perfect`` a planner gives up when no candidate can be solved;
-with aim ``most`` it goes on until nothing more can be filled.
+with aim ``most`` it continues until no further target cell can be filled.
 """
 
 from __future__ import annotations
@@ -21,14 +21,16 @@ AIMS = ('perfect', 'most')
 
 def aim_setting() -> Any:
     """The setting ``aim`` of a strategy."""
-    return setting('perfect', 'What is built where perfection is out of reach.', choices=AIMS)
+    return setting(
+        'perfect', 'Aim when a perfect reconstruction has become impossible.', choices=AIMS
+    )
 
 
 def regions_to_aim_at(family: RegionFamily, task: Task, built: Mask, aim: str) -> list[Region]:
-    """The regions of a family in a state; with aim ``most`` those that can still be won.
+    """The regions of a family in a state; with aim ``most`` those that can still be filled.
 
-    Then the silhouette is taken without the cells that nothing can reach any more, and together
-    with what is built.
+    With aim ``most`` the silhouette is replaced by its cells that can still be filled, together
+    with the cells that are built.
     """
     if aim == 'perfect':
         return family.regions(task, built)

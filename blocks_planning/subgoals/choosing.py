@@ -18,7 +18,7 @@ _FRACTIONS = 1 << 53
 def best(candidates: Sequence[Candidate], seed: int, built: Mask) -> int | None:
     """Index of a candidate of highest value, uniformly among equals; None if none has a value.
 
-    The draw depends on nothing but the trial's seed and the state.
+    The draw depends only on the seed of the trial and the state.
     """
     values = [candidate.value for candidate in candidates if candidate.value is not None]
     if not values:
@@ -29,20 +29,20 @@ def best(candidates: Sequence[Candidate], seed: int, built: Mask) -> int | None:
 
 
 def first_solved(candidates: Sequence[Candidate]) -> int | None:
-    """Index of the first candidate that is solved; None if there is none."""
+    """Index of the first solved candidate; None if there is none."""
     return next((i for i, candidate in enumerate(candidates) if candidate.is_solved), None)
 
 
 def probabilities(
     candidates: Sequence[Candidate], temperature: float, aggregate: str
 ) -> list[float]:
-    """The probability that each candidate is the one that is chosen.
+    """The probability of each candidate to be chosen.
 
-    A first subgoal has probability exp(G / T) over the sum of that for all first subgoals. With
-    ``aggregate`` 'best', G is the highest value of the candidates that begin with it, and those of
-    that value share the probability. With 'softmax', G = T ln(sum of exp(V / T)), and each
-    candidate has the share exp(V / T). So the probability of a first subgoal is in both cases the
-    sum over the candidates that begin with it.
+    A first subgoal has probability exp(G / T) divided by the sum of exp(G / T) over all first
+    subgoals. With ``aggregate`` 'best', G is the highest value of the candidates that begin with
+    it, and those of that value share the probability. With 'softmax', G = T ln(sum of exp(V / T)),
+    and each candidate has the share exp(V / T). In both cases the probability of a first subgoal is
+    the sum over the candidates that begin with it.
 
     Args:
         candidates: of a decision.
@@ -85,7 +85,7 @@ def _shares_of_best(candidates: Sequence[Candidate]) -> list[float]:
 def drawn(candidates: Sequence[Candidate], seed: int, built: Mask) -> int | None:
     """Index of a candidate, drawn by the probabilities; None if all of them are 0.
 
-    The draw depends on nothing but the trial's seed, the state and the probabilities.
+    The draw depends only on the seed of the trial, the state and the probabilities.
     """
     left = Generator([seed, *mask_words(built)]).below(_FRACTIONS) / _FRACTIONS
     last = None
@@ -95,4 +95,4 @@ def drawn(candidates: Sequence[Candidate], seed: int, built: Mask) -> int | None
                 return index
             left -= candidate.probability
             last = index
-    return last  # what rounding has left over
+    return last  # reached only by rounding

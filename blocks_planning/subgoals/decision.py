@@ -1,9 +1,9 @@
-"""What a subgoal planner is asked, and what it answers.
+"""The input and output of a subgoal planner.
 
-A planner is a pure function of its :class:`Situation`. It answers with the :class:`Query` tuples
-whose results it still lacks, or with a :class:`Decision`. The caller has the queries solved, in any
-order and in any process, and asks again with more known. So a planner or a searcher that is
-restarted loses nothing.
+A planner is a pure function of its :class:`Situation`. It returns the :class:`Query` tuples whose
+results it still needs, or a :class:`Decision`. The caller has the queries solved, in any order and
+in any process, and calls the planner again with the answers. So a planner or a searcher that is
+restarted loses no information.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ class Query(NamedTuple):
 
 Known: TypeAlias = Mapping[Query, SolveResult]
 Chain: TypeAlias = tuple[Region, ...]
-"""Regions to fill one after the other."""
+"""A sequence of regions to fill."""
 
 
 @dataclass(frozen=True)
 class Situation:
-    """All that a decision depends on.
+    """Everything that a decision depends on.
 
     Attributes:
-        task: what to build.
+        task: silhouette, board and library.
         built: the filled cells; the silhouette is not complete.
         seed: of the trial, for tie-breaking.
         known: answered queries.
@@ -57,15 +57,16 @@ class Situation:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A chain of regions that was considered (of one region, when scoping looks one ahead).
+    """A considered chain of regions (a single region if scoping looks one subgoal ahead).
 
     Attributes:
         regions: of the chain, in order.
         cells: r, the cells that it would add.
         planning_cost: c [states], up to and including its first unsolved subgoal.
-        value: V = r - lambda * c; None if a subgoal is unsolved, or values play no part.
+        value: V = r - lambda * c; None if a subgoal is unsolved, or the strategy does not use
+            values.
         status: of its first unsolved subgoal, or solved.
-        probability: of being chosen; None if the choice is not by probability.
+        probability: of being chosen; None if the choice is not random.
     """
 
     regions: Chain
@@ -86,10 +87,10 @@ class Subgoal:
     """A region to fill next, and the result of its solve.
 
     Attributes:
-        region: which cells to fill, and how they were chosen.
+        region: the cells to fill, with their label.
         target: all cells that are filled when the subgoal is reached.
         execute: number of placements to carry out before the next decision.
-        placements: the whole plan that fills the region; of a solve that failed, its last attempt.
+        placements: the whole plan that fills the region; if the solve failed, the last attempt.
         planning_cost: of its solve [states].
         solution_cost: of the attempt that succeeded [states]; 0 if none did.
         attempts: of its solve.
@@ -110,7 +111,7 @@ class Decision:
 
     Attributes:
         built: the state.
-        candidates: every chain that was considered, in the order in which ties are drawn.
+        candidates: all considered chains, in the order in which ties are drawn.
         chosen: index of the chosen candidate; None if the planner gives up, because no candidate
             is solved.
         subgoals: to execute, one after the other; empty if the planner gives up.
@@ -130,7 +131,7 @@ class Strategy(Protocol):
     """A subgoal planner; its fields are its settings.
 
     Attributes:
-        asks_person: whether a person's proposals are its candidates.
+        asks_person: whether its candidates are the proposals of a person.
     """
 
     name: ClassVar[str]
@@ -138,7 +139,7 @@ class Strategy(Protocol):
 
     @property
     def is_blind(self) -> bool:
-        """Whether a plan is carried out to its end, whatever is observed meanwhile."""
+        """Whether a plan is executed to its end, whatever is observed meanwhile."""
         ...
 
     @property
@@ -149,12 +150,12 @@ class Strategy(Protocol):
     def decide(self, situation: Situation) -> list[Query] | Decision:
         """Decide, or list the queries that must be answered first.
 
-        An empty list asks for another proposal of a person.
+        An empty list means that another proposal of a person is needed.
         """
         ...
 
     def chains(self, situation: Situation) -> Sequence[Chain]:
-        """The chains of a decision's candidates, in order. Asks nothing of ``known``."""
+        """The chains of a decision's candidates, in order; independent of ``situation.known``."""
         ...
 
     def sequences(self, situation: Situation) -> int:
@@ -164,11 +165,11 @@ class Strategy(Protocol):
     def rated(
         self, candidates: Sequence[Candidate], situation: Situation
     ) -> tuple[Candidate, ...]:
-        """The candidates with the probabilities of being chosen, if the choice is by those."""
+        """The candidates with their probabilities of being chosen, if the choice is random."""
         ...
 
     def value(self, cells: int, planning_cost: int) -> float | None:
-        """V of a solved chain [cells]; None if values play no part."""
+        """V of a solved chain [cells]; None if the strategy does not use values."""
         ...
 
     def choose(self, candidates: Sequence[Candidate], situation: Situation) -> int | None:

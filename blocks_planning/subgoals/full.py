@@ -1,7 +1,7 @@
 """Full-subgoal planning: all sequences of subgoals are weighed before the first block is placed.
 
-The 2**(m-1) sequences of m regions ask no more than m (m + 1) / 2 different queries, because a
-solved subgoal fills exactly its target. Each query is counted in every sequence that asks it.
+The 2**(m-1) sequences of m regions need at most m (m + 1) / 2 different queries, because a
+solved subgoal fills exactly its target. The cost of a query counts in every sequence that needs it.
 """
 
 from __future__ import annotations
@@ -31,13 +31,11 @@ class FullSubgoals(Planner):
         1.0, 'Cost per evaluated state, in cells.', name='lambda', above=0, unit='cells / state'
     )
     aim: str = aim_setting()
-    surprise: str = setting(
-        'replan', 'What follows an observation that the plan did not expect.', choices=SURPRISES
-    )
+    surprise: str = setting('replan', 'Reaction to an unexpected observation.', choices=SURPRISES)
 
     @property
     def is_blind(self) -> bool:
-        """Whether the plan is carried out to its end, whatever is observed."""
+        """Whether the plan is executed to its end, whatever is observed."""
         return self.surprise == 'blind'
 
     def chains(self, situation: Situation) -> Sequence[Chain]:

@@ -1,4 +1,4 @@
-"""A person scopes: the paradigm that the paper announces in its discussion."""
+"""A person as the planner: the paradigm that the paper announces in its discussion."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ COSTS = ('shown', 'hidden')
 
 @dataclass(frozen=True)
 class Human(Planner):
-    """Regions of any shape, proposed by a person one after the other until one can be built."""
+    """A person proposes regions of any shape, one after the other, until one can be built."""
 
     name: ClassVar[str] = 'human'
     asks_person: ClassVar[bool] = True
     participant: str = setting(
         '',
-        'Code of the person; no personal data.',
+        'Code of the person; do not use personal data.',
         pattern=r'[A-Za-z0-9_-]{0,32}',
         expected='a code of up to 32 letters, digits, _ and -',
     )
@@ -72,7 +72,7 @@ class Human(Planner):
 
 
 def used(situation: Situation, decision: Decision) -> tuple[Proposal, ...]:
-    """The proposals of a state that led to a decision: up to the one that decided."""
+    """The proposals of a state that led to a decision, up to the decisive one."""
     asking = list(decisive(situation.task, decision.built, situation.proposals))
     last = asking[len(decision.candidates) - (decision.chosen is not None)]
     return situation.proposals[: last.number + 1]

@@ -2,11 +2,11 @@
 
 Each subgoal of a sequence is a region of the state in which the one before it ends. A sequence has
 ``horizon`` subgoals, or fewer if it is complete. The sequences of a state are in lexicographic
-order. Nothing is solved here, so whether a subgoal can be filled plays no part.
+order. Whether a subgoal can be filled is not considered here.
 
-There can be millions of sequences. They are counted without being listed: the number of ways to go
-on from a state is counted once for each state and number of subgoals left. So a sequence can be
-found by its number, and a sample is drawn by drawing numbers.
+There can be millions of sequences. They are counted without listing them: the number of
+continuations is counted once for each state and number of subgoals left. So a sequence can be found
+by its number, and a sample is drawn by drawing numbers.
 """
 
 from __future__ import annotations
@@ -26,23 +26,23 @@ from blocks_planning.subgoals.decision import Chain
 from blocks_planning.subgoals.regions import Region, RegionFamily
 
 MAX_HORIZON = MAX_SIDE
-"""Most subgoals of a sequence: no silhouette has more rows."""
+"""Largest horizon: no silhouette has more rows."""
 MAX_SEQUENCES = 100_000
-"""Most sequences of a decision."""
+"""Largest number of sequences of a decision."""
 MOST_STATES = 1 << 18
-"""Most states from which the ways to go on are counted in one decision."""
+"""Largest number of states whose continuations are counted in one decision."""
 MOST_EXISTING = 1 << 48
-"""Most sequences that may exist."""
+"""Largest number of sequences that may exist."""
 
 
 class Lookahead(NamedTuple):
     """How far a planner looks ahead.
 
     Attributes:
-        family: of the regions.
+        family: family of the regions.
         aim: see :mod:`.aiming`.
-        horizon: most subgoals of a sequence.
-        max_sequences: most sequences that are considered.
+        horizon: largest number of subgoals of a sequence.
+        max_sequences: largest number of considered sequences.
     """
 
     family: RegionFamily
@@ -52,7 +52,7 @@ class Lookahead(NamedTuple):
 
 
 class Considered(NamedTuple):
-    """The sequences that are considered, in order, and how many exist."""
+    """The considered sequences, in order, and the number that exist."""
 
     chains: tuple[Chain, ...]
     existing: int
@@ -60,7 +60,7 @@ class Considered(NamedTuple):
 
 @lru_cache(maxsize=4)
 def considered(how: Lookahead, task: Task, built: Mask, seed: int) -> Considered:
-    """The sequences of a state: all of them, or as many as allowed, drawn without replacement.
+    """The sequences of a state: all of them, or a sample without replacement.
 
     Every set of ``max_sequences`` sequences is equally likely. The draw depends on the seed, the
     state and the horizon.
@@ -90,13 +90,13 @@ def _drawn(generator: Generator, existing: int, wanted: int) -> set[int]:
 
 def _too_far(how: Lookahead) -> LimitExceeded:
     return LimitExceeded(
-        f'horizon {how.horizon} with regions {how.family.name} gives more sequences than can be '
-        f'counted (over {MOST_STATES} states or {MOST_EXISTING} sequences); lower the horizon'
+        f'horizon {how.horizon} with regions {how.family.name} gives too many sequences to '
+        f'count (over {MOST_STATES} states or {MOST_EXISTING} sequences); lower the horizon'
     )
 
 
 class _Branches(NamedTuple):
-    """The regions of a state, and the number of sequences that begin with each or one before."""
+    """The regions of a state, and the cumulative number of sequences that begin with them."""
 
     regions: list[Region]
     totals: list[int]
@@ -122,7 +122,7 @@ class _Tree:
         return self._ends[built]
 
     def chain(self, built: Mask, number: int) -> Chain:
-        """The sequence of a number; fast for one number after the other."""
+        """The sequence of a number; fast for successive numbers."""
         chain: list[Region] = []
         for left in range(self._how.horizon, 0, -1):
             if chain and self._is_complete(built):
@@ -133,7 +133,7 @@ class _Tree:
         return tuple(chain)
 
     def _branch(self, built: Mask, left: int, number: int) -> tuple[Region, int]:
-        """The region with which a sequence goes on, and its number among those that do."""
+        """The next region of a sequence, and its number among those that continue so."""
         if left == 1:
             return self._regions(built)[number], 0
         regions, totals = self._branches_of(built, left)

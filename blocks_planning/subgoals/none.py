@@ -1,4 +1,4 @@
-"""Planning without subgoals: the one subgoal is the whole silhouette."""
+"""Planning without subgoals: the only subgoal is the whole silhouette."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class NoSubgoals(Planner):
     aim: str = aim_setting()
     failure: str = setting(
         'execute',
-        'Whether the last attempt of a solve that fails is executed.',
+        'What a failed solve leads to: its last attempt is executed, or the planner gives up.',
         choices=FAILURES,
     )
 
@@ -34,11 +34,11 @@ class NoSubgoals(Planner):
         return [(region,) for region in regions[-1:]]
 
     def value(self, cells: int, planning_cost: int) -> float | None:
-        """No value: there is nothing to weigh."""
+        """No value: there is only one candidate."""
         return None
 
     def choose(self, candidates: Sequence[Candidate], situation: Situation) -> int | None:
-        """The one candidate; if it is not solved, its last attempt is executed.
+        """The only candidate; if it is not solved, its last attempt is executed.
 
         The paper ends a trial when no further block can be placed.
         """

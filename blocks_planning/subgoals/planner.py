@@ -1,13 +1,13 @@
 """A planner is chains x weighing x choice.
 
-* *Chains*: which sequences of regions are considered. No subgoals: the whole silhouette. Scoping:
-  each region alone, or sequences up to a horizon. Full: every rising sequence that ends in the
-  whole silhouette.
+* *Chains*: the sequences of regions that are considered. Without subgoals: the whole silhouette.
+  Scoping: each region alone, or sequences up to a horizon. Full: every rising sequence that ends in
+  the whole silhouette.
 * *Weighing*: V = r - lambda * c of a chain whose subgoals are all solved, where c counts up to the
   first unsolved subgoal (paper, section "Subgoal planning").
 * *Choice*: the chain of highest value, ties broken uniformly, or a draw by probabilities.
 
-:class:`Planner` holds what all of them share; a subclass says what is its own.
+:class:`Planner` contains the common part; subclasses define the differences.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ from blocks_planning.subgoals.regions import Region
 
 
 class _Step(NamedTuple):
-    """What is known at a place on the way along a chain.
+    """The state of the weighing after some subgoals of a chain.
 
     Attributes:
-        built: the cells that are filled if all subgoals up to here are.
+        built: the cells that are filled if all these subgoals are reached.
         cost: of their solves, up to the first unsolved one [states].
         status: of the first unsolved one, or solved.
         missing: the first query that is not answered.
@@ -50,7 +50,7 @@ class _Step(NamedTuple):
 
 
 def _step(before: _Step, region: Region, known: Known) -> _Step:
-    """The next place on a way."""
+    """The step after one more subgoal."""
     query = Query(before.built, region.target(before.built))
     if before.missing is not None or before.status is not SolveStatus.SOLVED:
         return before._replace(built=query.target)
@@ -61,16 +61,16 @@ def _step(before: _Step, region: Region, known: Known) -> _Step:
 
 
 def _shared(one: Chain, other: Chain) -> int:
-    """Number of regions with which two chains begin alike."""
+    """Number of regions that two chains have in common at their beginning."""
     pairs = enumerate(zip(one, other, strict=False))
     return next((n for n, (a, b) in pairs if a != b), min(len(one), len(other)))
 
 
 @dataclass(frozen=True)
 class Planner(Configured):
-    """A strategy that decides by itself: lists chains, weighs them and chooses one.
+    """A strategy that lists chains, weighs them and chooses one.
 
-    A subclass defines :meth:`chains`, and what else it does differently.
+    A subclass defines :meth:`chains`, and overrides other methods where it differs.
     """
 
     asks_person: ClassVar[bool] = False
@@ -94,7 +94,7 @@ class Planner(Configured):
         raise NotImplementedError
 
     def sequences(self, situation: Situation) -> int:
-        """See :class:`Strategy`. As many as there are chains."""
+        """See :class:`Strategy`. The number of chains."""
         return len(self.chains(situation))
 
     def rated(
@@ -116,7 +116,7 @@ class Planner(Configured):
         return plan
 
     def considered(self, candidates: Sequence[Candidate]) -> int:
-        """See :class:`Strategy`. What the solves of all candidates cost."""
+        """See :class:`Strategy`. The cost of the solves of all candidates."""
         return sum(candidate.planning_cost for candidate in candidates)
 
     def decide(self, situation: Situation) -> list[Query] | Decision:
@@ -148,9 +148,9 @@ class Planner(Configured):
     def weighed(
         self, chains: Iterable[Chain], situation: Situation
     ) -> Iterator[Candidate | Query]:
-        """The candidate of each chain, or the first query on its way that is not answered.
+        """The candidate of each chain, or its first query without an answer.
 
-        What a chain has in common with the one before it is not looked up again.
+        The part that a chain has in common with the previous one is not computed again.
         """
         size = area(situation.built)
         before: Chain = ()
@@ -185,7 +185,7 @@ class Planner(Configured):
 
 
 def queries_along(chain: Chain, built: Mask) -> Iterator[Query]:
-    """What has to be solved to execute a chain from a state.
+    """The queries that must be solved to execute a chain from a state.
 
     A solved subgoal fills exactly its target, so the next one begins there.
     """
@@ -205,4 +205,4 @@ def cells_added(chain: Chain, built: Mask) -> int:
 
 def value_of(cells: int, planning_cost: int, lam: float) -> float:
     """V = r - lambda * c (paper, equation of the scoping planner) [cells]."""
-    return max(cells - lam * planning_cost, -sys.float_info.max)  # a record has no infinity
+    return max(cells - lam * planning_cost, -sys.float_info.max)  # records cannot contain infinity

@@ -1,4 +1,4 @@
-"""What a person proposes while scoping: regions to build, regions withdrawn, and giving up."""
+"""Proposals of a person: regions to build, withdrawn regions, and giving up."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ MOST_PROPOSALS = 1000
 
 
 class ProposalKind(str, Enum):
-    """What a proposal asks for."""
+    """The kind of a proposal."""
 
     BUILD = 'build'
-    """Search for a way to fill the region, and build it."""
+    """Search for a plan that fills the region, and build it."""
     WITHDRAWN = 'withdrawn'
     """The region was drawn and withdrawn; nothing happens."""
     GIVE_UP = 'give_up'
-    """End the trial; the region means nothing."""
+    """End the trial; the region is ignored."""
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """What a person proposes to build next.
+    """A proposal of a person.
 
     Attributes:
         sequence: of the observation in whose state it was made.
         number: counts the proposals made in that state, from 0.
-        kind: what it asks for.
+        kind: its kind.
         region: the cells, as they were drawn; see :func:`target_of`.
         thinking_s: from seeing the state, or the answer to the last proposal, to this one [s].
 
@@ -55,7 +55,7 @@ class Proposal:
 
 
 def target_of(task: Task, built: Mask, region: Mask) -> Mask:
-    """The cells that stand when a drawn region is filled: its target cells, and what is built.
+    """The cells that are filled when a drawn region is filled: its target cells and the built ones.
 
     Equal to ``built`` if there is nothing to fill.
     """
@@ -73,7 +73,7 @@ def proposed_at(proposals: Iterable[Proposal], sequence: int) -> tuple[Proposal,
 
 
 def decisive(task: Task, built: Mask, proposals: Iterable[Proposal]) -> Iterator[Proposal]:
-    """The proposals of a state that lead to something: regions with empty cells, and giving up."""
+    """The proposals of a state that have an effect: regions with empty cells, and giving up."""
     for proposal in proposals:
         match proposal.kind:
             case ProposalKind.GIVE_UP:
@@ -94,7 +94,7 @@ def out_of_turn(taken: Sequence[Proposal], proposal: Proposal) -> str:
 
 
 def asks_nothing(task: Task, built: Mask, proposal: Proposal) -> str:
-    """Why a proposal has no effect in a state; '' if it has one, or is withdrawn."""
+    """Why a proposal has no effect in a state; '' if it has one, or is of kind withdrawn."""
     if proposal.kind is ProposalKind.BUILD and is_filled(task, built, proposal.region):
         return 'region: expected a target cell that is still empty'
     return ''

@@ -1,8 +1,8 @@
-"""Subgoals as rectangles: the target cells inside one, wherever it stands.
+"""Rectangles as subgoals: the target cells inside a rectangle anywhere on the board.
 
 People who mark the parts of a silhouette mark rectangles far more often than full-width layers
-(see docs/people.md). A region of this family is what the silhouette has inside a rectangle of
-the grid; a solve then asks to fill it together with what is built.
+(see docs/people.md). A region of this family contains the target cells inside a rectangle of the
+grid; a solve fills them in addition to the built cells.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from blocks_planning.board.task import Task
 
 KIND = 'rectangle'
 MIN_CELLS = 2
-"""Fewest target cells of a region, unless told otherwise [cells]."""
+"""Default of the smallest number of target cells in a region [cells]."""
 
 Sides: TypeAlias = tuple[Column, Row, int, int]
 """Column and row of the lower left cell, width and height [cells]."""
@@ -24,7 +24,7 @@ RectangleLabel: TypeAlias = tuple[str, Sides]
 
 
 class _Shape(NamedTuple):
-    """A rectangle of a board: its place, its cells, and its four edges."""
+    """A rectangle of a board: its position, its cells, and its four edges."""
 
     sides: Sides
     cells: Mask
@@ -47,13 +47,13 @@ def rectangles(
 
     Args:
         task: the silhouette and its board.
-        built: what is filled when the region is begun.
+        built: the filled cells when the region is begun.
         min_cells: fewest target cells [cells].
         max_cells: most target cells [cells]; 0: three quarters of the silhouette, rounded down.
 
     Returns:
         Pairs of ``('rectangle', (column, row, width, height))`` and the target cells inside, by
-        rising row, column, height and width. The cells do not include what is built.
+        rising row, column, height and width. The cells do not include built ones.
     """
     most = max_cells or area(task.silhouette) * 3 // 4
     supported = task.board.ground | built << 1
@@ -68,7 +68,7 @@ def rectangles(
 def _empty_rectangles(
     board: Board, silhouette: Mask, least: int, most: int
 ) -> tuple[tuple[RectangleLabel, Mask, Mask], ...]:
-    """What of the conditions does not depend on the state: label, all cells, target cells."""
+    """Rectangles that meet the conditions without the state: label, cells, target cells."""
     found = []
     for sides, inside, edges in _shapes(board):
         cells = inside & silhouette

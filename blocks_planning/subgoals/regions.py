@@ -1,4 +1,4 @@
-"""Regions: parts of the silhouette to fill next, each with a label that says how it was made.
+"""Regions: parts of the silhouette to fill next, each with a label that describes it.
 
 A region family lists the regions that can come next in a state. The paper's family is ``rows``:
 the target rows below a height (paper, section "Subgoals").
@@ -20,7 +20,7 @@ MAX_CELLS = MAX_SIDE * MAX_SIDE
 
 
 class Label(NamedTuple):
-    """How a region was made, as data.
+    """The description of a region, as data.
 
     >>> str(Label('rows', (4,)))
     'rows 4'
@@ -38,13 +38,13 @@ class Label(NamedTuple):
 
 
 class Region(NamedTuple):
-    """Target cells to fill, and how they were chosen. Some of the cells may be filled already."""
+    """Target cells to fill, and their label. Some of the cells may be filled already."""
 
     label: Label
     cells: Mask
 
     def target(self, built: Mask) -> Mask:
-        """The cells that stand when the region is filled from a state."""
+        """The cells that are filled when the region is filled from a state."""
         return built | self.cells
 
 
@@ -75,9 +75,9 @@ class Rows(Configured):
     def regions(self, task: Task, built: Mask, partial: bool = False) -> list[Region]:
         """The different regions that strictly contain the state, the lowest first.
 
-        Of several heights with the same region the lowest is listed. The last region is the whole
-        silhouette, unless the state has a cell outside it: then there is none. With ``partial``
-        every height counts below which the state lacks a cell.
+        If several heights have the same region, the lowest is listed. The last region is the whole
+        silhouette; if the state has a cell outside it, there are no regions. With ``partial``
+        every height counts below which a target cell is not filled.
         """
         regions: list[Region] = []
         listed = built
@@ -92,15 +92,18 @@ class Rows(Configured):
 
 @dataclass(frozen=True)
 class Rectangles(Configured):
-    """The target cells inside a rectangle; see :mod:`.rectangles` for which ones count."""
+    """The target cells inside a rectangle of the grid.
+
+    The conditions are in :mod:`.rectangles`.
+    """
 
     name: ClassVar[str] = 'rectangles'
     min_cells: int = setting(
-        2, 'Fewest target cells of a rectangle.', least=1, most=MAX_CELLS, unit='cells'
+        2, 'Smallest number of target cells in a rectangle.', least=1, most=MAX_CELLS, unit='cells'
     )
     max_cells: int = setting(
         0,
-        'Most target cells of a rectangle; 0: three quarters of the silhouette.',
+        'Largest number of target cells in a rectangle; 0: three quarters of the silhouette.',
         least=0,
         most=MAX_CELLS,
         unit='cells',
@@ -114,7 +117,7 @@ class Rectangles(Configured):
 
 @lru_cache(maxsize=1 << 15)
 def _rectangle(label: RectangleLabel, cells: Mask) -> Region:
-    """A rectangle as a region, made once."""
+    """A rectangle as a region (cached)."""
     return Region(Label(*label), cells)
 
 
@@ -127,7 +130,7 @@ def rows_label(height: int) -> Label:
 
 
 def drawn_region(task: Task, built: Mask, cells: Mask) -> Region:
-    """The region that a person drew: its target cells, labelled as rows where it is just those."""
+    """The region that a person drew: its target cells, labelled as rows if they are such."""
     target = built | (cells & task.silhouette)
     for height in range(1, task.board.height + 1):
         if task.rows(height) == target:

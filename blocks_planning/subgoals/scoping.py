@@ -37,30 +37,32 @@ class Scoping(Planner):
         0.002, 'Cost per evaluated state, in cells.', name='lambda', least=0, unit='cells / state'
     )
     commit: str = setting(
-        'subgoal', 'Part of the plan executed before the next decision.', choices=COMMITS
+        'subgoal', 'Part of a plan that is executed before the next decision.', choices=COMMITS
     )
     aim: str = aim_setting()
-    regions: RegionFamily = member('rows', REGIONS, 'Regions that are considered as subgoals.')
+    regions: RegionFamily = member('rows', REGIONS, 'Family of regions that can be subgoals.')
 
     horizon: int = setting(
-        1, 'Most subgoals that are looked ahead.', least=1, most=MAX_HORIZON, unit='subgoals'
+        1, 'Number of subgoals to look ahead.', least=1, most=MAX_HORIZON, unit='subgoals'
     )
     max_sequences: int = setting(
         MAX_SEQUENCES,
-        'Most sequences of subgoals that are weighed; of more a sample is drawn.',
+        'Largest number of subgoal sequences to weigh; if there are more, a sample is drawn.',
         least=1,
         most=MAX_SEQUENCES,
         unit='sequences',
     )
-    choice: str = setting('best', 'How a candidate is chosen by its value.', choices=CHOICES)
+    choice: str = setting('best', 'How a candidate is chosen from the values.', choices=CHOICES)
     temperature: float = setting(
         1.0,
-        'Of softmax: a candidate of value V counts exp(V / temperature).',
+        'For softmax: a candidate of value V has weight exp(V / temperature).',
         above=0,
         unit='cells',
     )
     aggregate: str = setting(
-        'best', 'Of softmax: how sequences with one first subgoal count.', choices=AGGREGATES
+        'best',
+        'For softmax: how sequences that begin with the same subgoal are combined.',
+        choices=AGGREGATES,
     )
 
     def chains(self, situation: Situation) -> Sequence[Chain]:
@@ -97,7 +99,7 @@ class Scoping(Planner):
         return value_of(cells, planning_cost, self.lam)
 
     def subgoals_of(self, chain: Chain) -> Chain:
-        """The first region; after it, scoping looks again."""
+        """The first region; scoping decides again after it."""
         return chain[:1]
 
     def execute(self, plan: int) -> int:

@@ -1,6 +1,6 @@
-"""Making towers with wanted properties, and sets of them that are alike on average.
+"""Generation of towers with wanted properties, and of sets of towers that are similar on average.
 
-``ranges`` says what is wanted, ``candidates`` builds towers at random, ``measures`` and
-``difficulty`` measure them, ``making`` keeps those that are as wanted, ``balancing`` divides them,
-and ``writing`` writes them down.
+``ranges`` describes wanted values, ``candidates`` builds towers at random, ``measures`` and
+``difficulty`` measure them, ``making`` keeps those within the ranges, ``balancing`` divides them
+into sets, and ``writing`` writes them to files.
 """

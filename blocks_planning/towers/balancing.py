@@ -1,4 +1,4 @@
-"""Sets of towers that are alike on average."""
+"""Sets of towers that are similar on average."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _ROUNDS = 100
 def balanced_sets(
     towers: Sequence[Made], sets: int, size: int, names: Sequence[str], seed: int
 ) -> list[list[Made]]:
-    """Choose sets of towers whose means of some measures are as equal as found.
+    """Choose sets of towers whose means of some measures are as equal as possible.
 
-    Towers are shuffled, and then two towers of different sets, or of a set and those left over,
-    change places as long as that brings the means of the sets closer; measures are divided by
-    their standard deviation over all towers.
+    Towers are shuffled. Then two towers of different sets, or of a set and the remaining towers,
+    are exchanged as long as this brings the means of the sets closer; measures are divided by their
+    standard deviation over all towers.
 
     Args:
         towers: at least ``sets * size``; the more there are, the more equal the sets.
@@ -37,7 +37,7 @@ def balanced_sets(
         )
     for name in names:
         if any(name not in tower.measures for tower in towers):
-            raise ConfigurationError(f'measure {name!r} was not taken of every tower')
+            raise ConfigurationError(f'measure {name!r} is missing for some towers')
     values = np.array([[float(tower.measures[name]) for name in names] for tower in towers])
     spread = values.std(axis=0)
     values = (values - values.mean(axis=0)) / np.where(spread, spread, 1.0)
@@ -50,7 +50,7 @@ def balanced_sets(
 
 
 def _improve(values: np.ndarray, order: np.ndarray, sets: int, size: int) -> None:
-    """Let towers change places in ``order``, the sets one after the other, until none gains."""
+    """Exchange towers in ``order``, one set after the other, until no exchange helps."""
     best = imbalance(values[order[: sets * size]], sets)
     for _ in range(_ROUNDS):
         before = best
@@ -69,7 +69,7 @@ def _improve(values: np.ndarray, order: np.ndarray, sets: int, size: int) -> Non
 
 
 def imbalance(values: np.ndarray, sets: int) -> float:
-    """Sum of squared distances of the means of sets of one size from their common mean.
+    """Sum of squared distances of the means of equally large sets from their common mean.
 
     Args:
         values: float64 (sets * size, measures), set after set.

@@ -21,16 +21,16 @@ class Candidate(NamedTuple):
 def drop_blocks(
     board: Board, library: Library, count: int, rng: np.random.Generator
 ) -> Candidate | None:
-    """Drop random blocks, each so that it touches what is built.
+    """Drop random blocks, each of which touches the tower.
 
     Args:
         board: its size.
         library: the blocks.
-        count: how many to drop.
-        rng: of the choices; same generator, same tower.
+        count: number of blocks to drop.
+        rng: generator of the choices; the same generator gives the same tower.
 
     Returns:
-        None if there came to be no room for all of them.
+        The tower; None if there was not enough room for all blocks.
     """
     built = 0
     placements: list[Placed] = []

@@ -1,4 +1,4 @@
-"""How hard a tower is for a planner: what its trials cost on average."""
+"""Difficulty of a tower for a planner: mean cost and success of its trials."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from blocks_planning.trials.status import TrialStatus
 
 @dataclass(frozen=True)
 class Planner:
-    """A planner that measures difficulty, and in how many trials.
+    """A planner that measures difficulty, and its number of trials.
 
     Attributes:
         strategy: how subgoals are chosen.
@@ -35,7 +35,7 @@ class Planner:
 def difficulty_of(
     task: Task, planner: Planner, cancel: CancelToken | None = None
 ) -> dict[str, float] | None:
-    """What the trials of a planner cost on a tower; None if cancelled.
+    """The mean cost and success of a planner on a tower; None if cancelled.
 
     Returns:
         ``cost``: mean number of states that a trial evaluates in all its solves, whether it

@@ -1,7 +1,7 @@
-"""Towers as wanted: candidates are made one after the other, and those that fit are kept.
+"""Generates towers: makes candidates one after the other, and keeps those within wanted ranges.
 
-Candidate number i depends on the seed, on i and on the recipe only, so that the same call gives
-the same towers on every machine.
+Candidate number i depends only on the seed, i and the recipe, so the same call gives the same
+towers on every machine.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ _DROPPED = Range(6, 10)
 
 @dataclass(frozen=True)
 class Recipe:
-    """What towers are wanted.
+    """The wanted properties of towers.
 
     Attributes:
         board: their size.
-        dropped: how many blocks are dropped to make one.
+        dropped: number of blocks that are dropped to make one.
         library: the blocks.
         solvable: whether the library can rebuild them; if not, cells of a tower are changed.
         wanted: ranges by the name of the measure (:mod:`.measures`).
-        instruments: what they are measured with.
-        tries: most candidates that are made for each tower.
+        instruments: for measures that need a planner or statics.
+        tries: largest number of candidates for each tower.
 
     Raises:
-        ConfigurationError: for a measure that there is not, or that nothing is there to measure.
+        ConfigurationError: for an unknown measure, or one that needs a missing instrument.
     """
 
     board: Board
@@ -55,7 +55,7 @@ class Recipe:
         for name in self.wanted:
             if name not in NAMES:
                 raise ConfigurationError(
-                    f'there is no measure {name!r}; expected one of {", ".join(NAMES)}'
+                    f'unknown measure {name!r}; expected one of {", ".join(NAMES)}'
                 )
             if name in LOOSE and self.instruments.holds is None:
                 raise ConfigurationError(f'measure {name!r} needs statics for loose blocks')
@@ -83,18 +83,18 @@ def make_towers(
     cancel: CancelToken | None = None,
     gauge: Gauge | None = None,
 ) -> list[Made]:
-    """Different towers of a recipe, in the order in which they were found.
+    """Different towers of a recipe, in the order of generation.
 
     Args:
-        recipe: what is wanted.
+        recipe: the wanted properties.
         count: number of towers.
         seed: of all choices, 0 or more.
         cancel: ends it from another thread; there are fewer towers then.
-        gauge: is told how far it is; a step is a tower, a state a candidate.
+        gauge: shows the progress; a step is a tower, a state a candidate.
 
     Raises:
-        ConfigurationError: if ``recipe.tries`` candidates for each tower do not give enough; it
-            says which wishes were missed how often.
+        ConfigurationError: if ``recipe.tries`` candidates for each tower do not give enough; the
+            message counts the reasons.
     """
     cancel, gauge = cancel or CancelToken(), gauge or Gauge()
     gauge.total = count
@@ -106,7 +106,7 @@ def make_towers(
         gauge.states = number + 1
         candidate = _candidate(recipe, np.random.default_rng([seed, number]))
         if candidate is None or candidate.silhouette in found:
-            missed['room on the board' if candidate is None else 'being new'] += 1
+            missed['room on the board' if candidate is None else 'being different'] += 1
             continue
         made = _measure(recipe, candidate, cancel, missed)
         if made is not None:
@@ -115,8 +115,8 @@ def make_towers(
     if len(found) < count and not cancel.cancelled:
         reasons = ', '.join(f'{name} ({times} times)' for name, times in missed.most_common(4))
         raise ConfigurationError(
-            f'found {len(found)} of {count} towers among {recipe.tries * count} candidates; they '
-            f'missed {reasons}; widen these wishes, or try more candidates'
+            f'found {len(found)} of {count} towers among {recipe.tries * count} candidates; the '
+            f'others failed: {reasons}; widen these ranges, or try more candidates'
         )
     return list(found.values())
 
@@ -135,7 +135,7 @@ def _candidate(recipe: Recipe, rng: np.random.Generator) -> Candidate | None:
 def _measure(
     recipe: Recipe, candidate: Candidate, cancel: CancelToken, missed: Counter[str]
 ) -> Made | None:
-    """The tower with its measures; None, and noted why, if it is not as wanted."""
+    """The tower with its measures; None, with the reason counted, if it is outside the ranges."""
     task = Task(recipe.board, candidate.silhouette, recipe.library)
     wanted = {'solvable': Range(int(recipe.solvable), int(recipe.solvable)), **recipe.wanted}
     measures: dict[str, float] = {}

@@ -15,7 +15,7 @@ from blocks_planning.towers.candidates import Candidate
 from blocks_planning.towers.difficulty import Planner, difficulty_of
 
 Holds: TypeAlias = Callable[[Sequence[Placed]], bool]
-"""Whether blocks that are not glued stay where they are."""
+"""Decides whether a tower of loose blocks is stable."""
 
 EXACT = {
     'solvable': '1 if the blocks of the library can rebuild the tower, 0 if not',
@@ -23,7 +23,7 @@ EXACT = {
     'arrangements': 'number of arrangements that rebuild it',
     'optimal': 'number of arrangements with the fewest blocks',
 }
-LOOSE = {'loose': '1 if a known order of placing holds with loose blocks all the time, 0 if not'}
+LOOSE = {'loose': '1 if a known order of placing is stable with loose blocks throughout, 0 if not'}
 DIFFICULTY = {
     'cost': 'mean states that a trial of the planner evaluates',
     'success': 'share of the trials of the planner that rebuild the tower',
@@ -34,11 +34,11 @@ NAMES = (*SHAPE, *EXACT, *LOOSE, *DIFFICULTY)
 
 @dataclass(frozen=True)
 class Instruments:
-    """What towers are measured with.
+    """Instruments for measures that need a planner or statics.
 
     Attributes:
-        planner: for the measures of difficulty; None to leave them out.
-        holds: statics, for the measure ``loose``; None to leave it out.
+        planner: for the measures of difficulty; None to omit them.
+        holds: statics, for the measure ``loose``; None to omit it.
     """
 
     planner: Planner | None = None
@@ -48,7 +48,7 @@ class Instruments:
 def measured(
     task: Task, candidate: Candidate, instruments: Instruments, cancel: CancelToken
 ) -> Iterator[Mapping[str, float]]:
-    """The measures of a tower, group by group, so that the rest can be left undone.
+    """The measures of a tower, group by group, so that later groups can be skipped.
 
     Raises:
         LimitExceeded: if the tower is too large for exact values.
@@ -72,7 +72,7 @@ def measured(
 
 
 def _is_loose(candidate: Candidate, answer: ExactAnswer, holds: Holds) -> bool:
-    """Whether one of the two known ways to build the tower holds after every block."""
+    """Whether one of the two known plans for the tower is stable after every block."""
     ways = (candidate.placements, answer.placements or ())
     return any(
         bool(way) and all(holds(way[:count]) for count in range(1, len(way) + 1)) for way in ways

@@ -1,4 +1,4 @@
-"""What is wanted of a measure: a number, or a range of them."""
+"""Wanted values of a measure: a number or a range."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def parse_range(text: str, origin: str) -> Range:
     """Read '3', '3-5', '3-' (at least) or '-5' (at most).
 
     Raises:
-        ConfigurationError: beginning with ``origin``, for anything else, or if the ends are
-            exchanged.
+        ConfigurationError: with a message that begins with ``origin``, for other texts, or if the
+            first end is larger.
     """
     match = _RANGE.fullmatch(text.strip())
     low, dash, high = match.groups() if match else (None, None, None)
@@ -44,5 +44,7 @@ def parse_range(text: str, origin: str) -> Range:
         return Range(float(low or 0), float(low or 0))
     found = Range(float(low or 0), float(high) if high else inf)
     if found.least > found.most:
-        raise ConfigurationError(f'{origin}: the first end is the smaller one, got {shown(text)}')
+        raise ConfigurationError(
+            f'{origin}: the first end must be the smaller one, got {shown(text)}'
+        )
     return found

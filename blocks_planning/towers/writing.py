@@ -1,4 +1,4 @@
-"""Towers that were made, as text pictures with their measures above them."""
+"""Generated towers as text pictures with their measures above them."""
 
 from __future__ import annotations
 

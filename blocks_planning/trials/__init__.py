@@ -1,1 +1,1 @@
-"""Trials: what is run, how it goes on, and what is kept of it."""
+"""Trials: their specification, their execution and their records."""

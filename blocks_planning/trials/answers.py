@@ -1,8 +1,8 @@
-"""Answered queries that can be passed on unchanged although more are added.
+"""An immutable mapping of answered queries to which answers can be added cheaply.
 
-A part never changes what it remembers; it makes a new memory. To copy thousands of answers for
-each new one would take a time that grows with their square, so memories share one store, and each
-sees only what had been added when it was made.
+A part never changes its memory; it makes a new one. Copying thousands of answers for each new one
+would take quadratic time, so all memories share one store, and each sees only the answers that
+had been added when it was made.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ class Answers(Mapping[Query, SolveResult]):
     """Results by query, in the order in which they were added."""
 
     def __init__(self) -> None:
-        """None yet."""
+        """Make an empty mapping."""
         self._store: dict[Query, tuple[int, SolveResult]] = {}
         self._size = 0
 
     def with_answer(self, query: Query, result: SolveResult) -> Answers:
-        """These answers and a new one; copies only if others were added to these before."""
+        """These answers and a new one; copies only if another one was added to these before."""
         added = Answers()
         if len(self._store) == self._size:
             added._store = self._store

@@ -1,9 +1,9 @@
-"""Whether a message fits the messages of its trial that came before.
+"""Checks whether a message is consistent with the earlier messages of its trial.
 
 A message can be well formed and yet impossible: a board that does not follow from the last one, a
-status that the board does not have, a block that is not in the library. No part that keeps to the
-rules sends that, so it is refused. A message that fits is believed: whatever sends the next state
-of a trial is its world.
+status that contradicts the board, a block that is not in the library. No correct part sends such a
+message, so it is refused. A consistent message is accepted: the sender of the next state of a trial
+is taken for its world.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ from blocks_planning.worlds.observation import (
 
 
 class Contradiction(InvalidInput):
-    """A message that does not fit its trial, or the messages of it that came before."""
+    """A message that contradicts its trial or the earlier messages of the trial."""
 
 
 class Consistency:
-    """What is known of a trial, as far as later messages must fit it.
+    """The facts about a trial with which later messages must be consistent.
 
     Attributes:
-        spec: what the trial is.
+        spec: specification of the trial.
     """
 
     def __init__(self, spec: TrialSpec) -> None:
@@ -50,10 +50,10 @@ class Consistency:
         self._decisions: tuple[DecisionRecord, ...] = ()
 
     def check(self, message: Message) -> None:
-        """Take note of a message of this trial that fits.
+        """Check a message of this trial, and remember it if it is consistent.
 
         Raises:
-            Contradiction: if it does not; nothing is noted then.
+            Contradiction: if it is inconsistent; then it is not remembered.
         """
         match message:
             case WorldState():
@@ -63,15 +63,17 @@ class Consistency:
             case SearchRequest(_, queries):
                 for query in queries:
                     if query.target & ~query.built & ~self.spec.task.silhouette:
-                        raise Contradiction('queries: ask for cells that are not to be filled')
+                        raise Contradiction('queries: a target has cells outside the silhouette')
             case SearchAnswer(_, _, result):
                 self._check_blocks(result.placements, 'placements')
                 if result.solution_cost > result.planning_cost:
-                    raise Contradiction('solution_cost: is more than that of all attempts')
+                    raise Contradiction(
+                        'solution_cost: is above the planning cost of all attempts'
+                    )
 
     def _check_state(self, state: WorldState) -> None:
         if not _is_one_way(self._observations, state.observations):
-            raise Contradiction('observations: do not go on from the state before')
+            raise Contradiction('observations: do not continue those of the previous state')
         if self.spec.world.simulates:
             self._check_blocks(state.placements, 'placements')
         problem = impossible(self.spec.task.board, state.placements)
@@ -88,26 +90,28 @@ class Consistency:
             self._observations = state.observations
 
     def _check_status(self, state: WorldState) -> None:
-        """A world need not notice that it is stuck; then the planner gives up."""
+        """A world may report a stuck board as building; then the planner gives up."""
         is_complete = state.built == self.spec.task.silhouette
         if (state.status is TrialStatus.SUCCESS) != is_complete:
-            raise Contradiction(f'status: {state.status.value} is not what the placements lead to')
+            raise Contradiction(f'status: {state.status.value} contradicts the placements')
         if state.status is TrialStatus.STUCK:
             reached = status_of(self.spec, state.placements, state.built)
             if reached is not TrialStatus.STUCK:
-                raise Contradiction('status: something can still be placed')
+                raise Contradiction('status: stuck, but a legal placement is left')
 
     def _check_subgoal(self, chosen: SubgoalChosen) -> None:
         decisions = chosen.decisions
         self._check_decisions(decisions)
         if chosen.proposals and not self.spec.strategy.asks_person:
-            raise Contradiction('proposals: no person takes part')
+            raise Contradiction('proposals: the strategy asks no person')
         begun = [(entry.sequence, entry.decision.built) for entry in decisions]
-        if not self.spec.strategy.is_blind:  # else a later subgoal begins wherever the plan led
+        if (
+            not self.spec.strategy.is_blind
+        ):  # else a later subgoal begins wherever the plan has led
             begun.append((chosen.sequence, chosen.built))
         for sequence, built in begun:
             if sequence < len(self._states) and self._states[sequence] != built:
-                raise Contradiction(f'built: is not the state of observation {sequence}')
+                raise Contradiction(f'built: differs from the state of observation {sequence}')
         if chosen.sequence < decisions[-1].sequence:
             raise Contradiction(
                 f'sequence: must be {decisions[-1].sequence} or more after these decisions'
@@ -122,12 +126,12 @@ class Consistency:
         if places[0] != 0 or places != sorted(set(places)):
             raise Contradiction('decisions: are not in the order of their states, from the first')
         if any(not entry.decision.subgoals for entry in decisions[:-1]):
-            raise Contradiction('decisions: go on after giving up')
+            raise Contradiction('decisions: continue after the planner gave up')
         for index, entry in enumerate(decisions):
             for subgoal in entry.decision.subgoals:
                 self._check_blocks(subgoal.placements, f'decisions[{index}]')
         if not _is_one_way(*map(_decided, (self._decisions, decisions))):
-            raise Contradiction('decisions: do not go on from those before')
+            raise Contradiction('decisions: do not continue the earlier ones')
 
     def _check_blocks(self, placements: Iterable[Placed], field: str) -> None:
         library = self.spec.task.library
@@ -139,11 +143,11 @@ class Consistency:
 
 
 def _decided(decisions: Iterable[DecisionRecord]) -> tuple[object, ...]:
-    """What does not change any more, unlike how far it was followed."""
+    """The parts of decisions that are final; the number of executed subgoals still grows."""
     return tuple((entry.sequence, entry.decision) for entry in decisions)
 
 
 def _is_one_way(one: tuple[object, ...], other: tuple[object, ...]) -> bool:
-    """Whether the longer of two goes on from the shorter."""
+    """Whether the longer of two sequences begins with the shorter one."""
     length = min(len(one), len(other))
     return one[:length] == other[:length]

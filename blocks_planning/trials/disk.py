@@ -1,4 +1,4 @@
-"""Writing to files that have to stay readable, whatever happens in the middle of it."""
+"""Writing to files that must stay readable, even if writing is interrupted."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from pathlib import Path
 from blocks_planning.errors import RecordError
 
 LOCK_WAIT_S = 5.0
-"""For as long as a process may take to go that was told to."""
+"""Grace period after a stop request: time that a process may take to end [s]."""
 _LOOK_S = 0.02
 
 
 def lock(descriptor: int, path: Path, wait_s: float = LOCK_WAIT_S) -> None:
-    """Be the only process that writes a file, or in a folder, of a system that can open folders.
+    """Lock a file for one writing process; or a folder, on systems that can open folders.
 
-    The lock ends when the descriptor is closed or the process ends, for whatever reason. It binds
-    only those that call this function; but under Windows nothing else can read the first 64 KiB
-    of a locked file.
+    The lock ends when the descriptor is closed or the process ends, for any reason. It excludes
+    only processes that call this function; but under Windows no other process can read the first
+    64 KiB of a locked file.
 
     Args:
         descriptor: of the file or folder, open.
@@ -26,20 +26,20 @@ def lock(descriptor: int, path: Path, wait_s: float = LOCK_WAIT_S) -> None:
         wait_s: how long to wait for another holder of the lock [s].
 
     Raises:
-        RecordError: if there is still another holder after ``wait_s``.
+        RecordError: if another process still holds the lock after ``wait_s``.
         OSError: if the file system has no locks.
     """
     deadline = time.monotonic() + wait_s
     while not _is_locked(descriptor):
         if time.monotonic() >= deadline:
             raise RecordError(
-                f'{path}: is being written by another process; name another folder or end it'
+                f'{path}: another process is writing it; choose another folder or end that process'
             )
         time.sleep(_LOOK_S)
 
 
 def _is_locked(descriptor: int) -> bool:
-    # Imported here, because most commands import this module and lock nothing.
+    # Imported here, because most commands import this module but need no lock.
     import portalocker
 
     try:
@@ -49,7 +49,7 @@ def _is_locked(descriptor: int) -> bool:
     except portalocker.AlreadyLocked:
         return False
     except portalocker.LockException as error:
-        if isinstance(error.__cause__, BlockingIOError):  # what releases before 3 say instead
+        if isinstance(error.__cause__, BlockingIOError):  # releases before 3 raise this instead
             return False
         raise error.__cause__ or error from None
     return True
@@ -64,7 +64,7 @@ def append(descriptor: int, data: bytes, sync: bool) -> None:
         sync: whether to return only when it is on disk.
 
     Raises:
-        OSError: if the disk does not take it; the file is as it was.
+        OSError: if the data cannot be written; the file is then unchanged.
     """
     size = os.fstat(descriptor).st_size
     try:

@@ -1,8 +1,8 @@
-"""How far a decision has been carried out, judged by what was observed.
+"""How far a decision has been executed, according to the observations.
 
 A decision names one or more subgoals. They are executed one after the other; the one that is being
-executed is *current*. Each observation moves the execution along its *way*, the states that the
-current subgoal's plan leads through::
+executed is *current*. The states that its plan passes through are its *way*. Each observation
+is compared with the way::
 
     sequence      4        5        6        7        8
     state         s4       s5       s5       s6       x
@@ -11,12 +11,12 @@ current subgoal's plan leads through::
                   |<------- way of the subgoal ------->
     way           w0=s4    w1=s5    w2=s6    w3
 
-* the state is the next one on the way: the plan is one placement further;
-* the state is unchanged: the order was lost, and is given again;
+* the state is the next one on the way: one more placement of the plan is done;
+* the state is unchanged: the order was lost, and is repeated;
 * the state is any other: a *surprise*. The plan no longer holds, and a new decision is due.
 
-A strategy may ignore surprises (``is_blind``). Then an order counts as done when it has landed a block,
-wherever that was, and the execution ends early only where the next order is impossible.
+A strategy may ignore surprises (``is_blind``). Then an order counts as done when a block has
+landed, no matter where, and the execution ends early only if the next order is impossible.
 
 The subgoal ends when ``execute`` placements are done. Then the next subgoal of the decision
 becomes current, or, after the last one, a new decision is due.
@@ -41,9 +41,9 @@ class Progress(NamedTuple):
     """How far a subgoal has been executed.
 
     Attributes:
-        done: placements of its plan that were carried out.
-        sequence: of the last state that was looked at: the one in which it ended, or in which
-            the surprise was seen, or the latest.
+        done: number of placements of its plan that were carried out.
+        sequence: of the last state that was considered: the one in which it ended, or in which
+            the surprise was observed, or the latest.
         is_done: whether everything to execute has been carried out.
         is_surprised: whether the state is not on the way.
     """
@@ -81,7 +81,7 @@ def progress_of(
         built: the state from which it was planned.
         subgoal: what is executed; None if the planner gave up.
         start: sequence of the state in which execution began.
-        seen: what has been observed.
+        seen: the observations so far.
     """
     if subgoal is not None and spec.strategy.is_blind:
         return _follow_blindly(spec.task.board, subgoal, start, seen)
@@ -122,8 +122,8 @@ def _follow_blindly(board: Board, subgoal: Subgoal, start: int, seen: History) -
 class SubgoalChosen:
     """The subgoal to execute from the state ``sequence`` on, or that the planner gives up.
 
-    It carries all decisions of the trial, so that a part that missed one, or starts late, knows as
-    much as the others. The current subgoal is the last one begun of the last decision.
+    It contains all decisions of the trial, so that a part that missed one, or starts late, has the
+    same information as the others. The current subgoal is the last one begun of the last decision.
 
     Attributes:
         trial_id: of the trial.
@@ -173,7 +173,7 @@ class SubgoalChosen:
 
 
 def way_of(board: Board, built: Mask, subgoal: Subgoal | None) -> list[Mask]:
-    """The states that the execution of a subgoal leads through from ``built``."""
+    """The states that the execution of a subgoal passes through, beginning with ``built``."""
     placements = subgoal.placements[: subgoal.execute] if subgoal else ()
     return rules.states_along(board, built, placements)
 
@@ -185,7 +185,7 @@ class Span(NamedTuple):
         decision: index of its decision.
         subgoal: its index in that decision.
         start: sequence of the state in which it was begun.
-        progress: how far it came.
+        progress: how far it was executed.
     """
 
     decision: int

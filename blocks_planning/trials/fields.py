@@ -1,4 +1,4 @@
-"""A JSON object read key by key, with an error for everything that is not as it must be."""
+"""A JSON object that is read key by key, with an error for every invalid value."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ T = TypeVar('T')
 
 
 class Fields:
-    """A JSON object, and where it stands."""
+    """A JSON object, and its place in the file for messages."""
 
     def __init__(self, data: object, place: str) -> None:
         if not isinstance(data, dict):
@@ -26,7 +26,7 @@ class Fields:
     def get(self, key: str, kind: type | None = None) -> Any:
         """The value of a key, of a JSON type."""
         if key not in self.data:
-            raise RecordError(f'{self.place}: has no key {key!r}')
+            raise RecordError(f'{self.place}: missing key {key!r}')
         value = self.data[key]
         if kind is not None and type(value) is not kind:
             raise self.error(key, f'must be of type {kind.__name__}')
@@ -37,7 +37,7 @@ class Fields:
         return RecordError(f'{self.place}: {key} {what}, got {short(self.data[key])}')
 
     def count(self, key: str) -> int:
-        """A whole number that is not negative."""
+        """A whole number of 0 or more."""
         value: int = self.get(key, int)
         if not 0 <= value <= MAX_BUDGET:
             raise self.error(key, f'must be from 0 to {MAX_BUDGET}')
@@ -48,19 +48,19 @@ class Fields:
         return None if self.get(key) is None else float(self.get(key, float))
 
     def item(self, key: str, items: Sequence[T]) -> T:
-        """The item of a list that the value of a key names by its index."""
+        """The item of ``items`` whose index is the value of a key."""
         (item,) = self._named((self.get(key),), key, items)
         return item
 
     def items(self, key: str, items: Sequence[T]) -> tuple[T, ...]:
-        """The items of a list that a list of indices names."""
+        """The items of ``items`` whose indices are the value of a key."""
         return self._named(self.get(key, list), key, items)
 
     def _named(self, numbers: Sequence[object], key: str, items: Sequence[T]) -> tuple[T, ...]:
         found = []
         for number in numbers:
             if type(number) is not int or not 0 <= number < len(items):
-                raise self.error(key, f'must be indices below {len(items)}')
+                raise self.error(key, f'must contain indices below {len(items)}')
             found.append(items[number])
         return tuple(found)
 
@@ -105,15 +105,15 @@ class Fields:
         placements = [Placed(*places.numbers(place, 4)) for place in places.data]
         for place, placed in zip(places.data, placements, strict=True):
             if not (placed.width and placed.height):
-                raise places.error(place, 'must be of a block with width and height')
+                raise places.error(place, 'must be a block with width and height above 0')
         return tuple(placements)
 
     def compare(self, expected: dict[str, Any]) -> None:
-        """Refuse keys that do not belong here, and sums that are not the sums of their parts."""
+        """Refuse unknown keys, and values that contradict the rest of the record."""
         for key in self.data:
             if key not in expected:
                 raise RecordError(f'{self.place}: unknown key {shown(key)}')
-        # The name follows from much of the rest: what else is wrong says more.
+        # The trial id depends on most other keys, so errors of the others are reported first.
         for key in sorted(self.data, key=lambda key: key == 'trial_id'):
             if not _same(self.data[key], expected[key]):
                 what = f'contradicts the rest of the record, which gives {short(expected[key])}'
@@ -136,5 +136,5 @@ def short(value: object) -> str:
     try:
         text = json.dumps(value)
     except RecursionError:
-        text = 'something nested too deeply'
+        text = 'a value that is nested too deeply'
     return text if len(text) <= 60 else f'{text[:57]}...'

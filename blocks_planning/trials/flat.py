@@ -1,8 +1,8 @@
 """Every setting of every family, as names in one flat list.
 
-Command-line options and columns of tables are flat: they have no room for "the lambda of the
-strategy". A setting's flat name is its own name. If another family or another column of the table
-of trials has that name, it is preceded by the family's, such as ``world_blocks``.
+Command-line options and columns of tables are flat: they cannot express "the lambda of the
+strategy". The flat name of a setting is its own name. If another family or another column of the
+table of trials has that name, the name of the family is put before it, such as ``world_blocks``.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class FlatSetting:
 
     @property
     def choices(self) -> tuple[str, ...]:
-        """The words that some member allows; empty if some member allows any."""
+        """The words that at least one member allows; empty if a member allows any word."""
         words: dict[str, None] = {}
         for one in self.members.values():
             allowed = one.choices or (tuple(one.family) if one.family is not None else ())

@@ -1,7 +1,7 @@
-"""A trial without messages: a planner is asked, its plan carried out, and it is asked again.
+"""A trial without messages: the planner decides, its plan is executed, and so on.
 
-The record is the one that :func:`blocks_planning.trials.local.run_trial` gives. An answer can be
-used again in the next trial of the same task, search, seed and budget, whatever its strategy: a
+The record is the one that :func:`blocks_planning.trials.local.run_trial` gives. Answers can be
+reused in later trials with the same task, search, seed and budget and any strategy: a
 solve depends on nothing else.
 """
 
@@ -29,13 +29,13 @@ def follow(
 
     Args:
         spec: the trial.
-        answers: what is known of this task, search, seed and budget; new answers are added. The
-            record counts each as if it had been searched for again.
+        answers: known answers for this task, search, seed and budget; new ones are added. The
+            record counts the cost of a known answer as if it had been computed again.
         workers: threads that solve the queries of a decision; 1 where processes run side by side.
 
     Raises:
         ConfigurationError: for a strategy that asks a person, or a world that is observed.
-        LimitExceeded: if the search has a limit of size and a problem is over it.
+        LimitExceeded: if a problem exceeds a size limit of the search.
     """
     if not spec.world.simulates:
         raise ConfigurationError(f'world {spec.world.name} cannot be simulated')
@@ -60,7 +60,7 @@ def follow(
 
 
 class _Board:
-    """The board of a trial, as its world shows it."""
+    """The board of a trial, as observed in its world."""
 
     def __init__(self, spec: TrialSpec) -> None:
         self._spec = spec
@@ -69,11 +69,11 @@ class _Board:
         self._built = mask_of(spec.task.board, spec.built)
 
     def status(self) -> TrialStatus:
-        """How the board stands."""
+        """The status of the board."""
         return status_of(self._spec, self._blocks, self._built)
 
     def situation(self, decisions: int, known: MutableMapping[Query, SolveResult]) -> Situation:
-        """What the planner decides on."""
+        """The situation for the next decision."""
         return Situation(
             task=self._spec.task,
             built=self._built,
@@ -84,7 +84,7 @@ class _Board:
         )
 
     def carry_out(self, subgoal: Subgoal) -> tuple[TrialStatus, bool]:
-        """Execute a subgoal; return how the board stands, and whether the next one may follow."""
+        """Execute a subgoal; return the status, and whether the next subgoal may follow."""
         spec = self._spec
         plan = subgoal.placements[: subgoal.execute]
         if spec.world.obeys:
@@ -92,7 +92,7 @@ class _Board:
             return self.status(), self._built == subgoal.target
         for placed in plan:
             if rules.drop(spec.task.board, self._built, placed.placement) is None:
-                return self.status(), False  # only a blind plan comes to this
+                return self.status(), False  # only with a blind plan
             before = self._built
             status = TrialStatus.BUILDING
             while self._built == before and status is TrialStatus.BUILDING:
@@ -105,7 +105,7 @@ class _Board:
         return self.status(), self._built == subgoal.target or spec.strategy.is_blind
 
     def _order(self, placement: Placement) -> TrialStatus:
-        """Give one order, or cancel the trial if there may be no more observations."""
+        """Give one order, or cancel the trial if the limit of observations is reached."""
         spec = self._spec
         if len(self.observations) >= MAX_OBSERVATIONS:
             return TrialStatus.CANCELLED
@@ -132,7 +132,7 @@ def _decide(
         if isinstance(answer, Decision):
             return answer
         if not answer:
-            raise ConfigurationError(f'strategy {spec.strategy.name} waits for a person')
+            raise ConfigurationError(f'strategy {spec.strategy.name} needs a person')
         problems = [Problem(spec.task, *query) for query in answer]
         results = solve_many(problems, spec.search, spec.seed, spec.budget, workers=workers)
         answers.update(zip(answer, results, strict=True))

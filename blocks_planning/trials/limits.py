@@ -1,4 +1,4 @@
-"""Trials that ended because a search met the limit of its memory."""
+"""Trials that ended because a search reached its memory limit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from blocks_planning.trials.status import TrialStatus
 
 
 def ended_at_a_limit(record: TrialRecord) -> bool:
-    """Whether the planner gave up without knowing if there is a way."""
+    """Whether the planner gave up because a search exceeded its memory limit."""
     if record.status is not TrialStatus.GAVE_UP:
         return False
     candidates = record.decisions[-1].decision.candidates

@@ -1,4 +1,4 @@
-"""A trial inside one process: carries messages between the parts until there are none."""
+"""A trial inside one process: passes messages between the parts until none is left."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ def run_trial(
     Args:
         spec: the trial.
         cancel: ends it, from another thread, with status ``cancelled``.
-        observe: is shown every message, before the parts are; the trial goes on when it returns.
-        proposals: of a person, one for each turn. A trial that waits for more than there are
-            ends with status ``cancelled``.
+        observe: called with every message before the parts receive it.
+        proposals: of a person, one for each turn. A trial that needs more proposals ends with
+            status ``cancelled``.
     """
     cancel = cancel or CancelToken()
     questions: list[Solve] = []

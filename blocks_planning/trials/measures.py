@@ -1,4 +1,4 @@
-"""How well a board matches its silhouette."""
+"""Agreement of a board with its silhouette."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from blocks_planning.board.geometry import Mask, area
 
 
 class Measures(NamedTuple):
-    """Filled cells against target cells, each from 0 to 1; 1 where both are empty.
+    """Agreement of filled and target cells, each from 0 to 1; 1 if there are neither.
 
     Attributes:
         recall: share of the target cells that are filled.

@@ -1,15 +1,15 @@
-"""What the parts of a trial tell each other.
+"""The messages between the parts of a trial.
 
 There are four parts, each a pure function ``step(memory, message) -> (memory, messages)``:
 
 * :mod:`.world` owns the board,
-* :mod:`.selector` owns which region comes next,
-* :mod:`.searcher` owns how a region is filled,
-* :mod:`.scribe` owns which trial runs and writes down what happened.
+* :mod:`.selector` chooses the next region,
+* :mod:`.searcher` plans how to fill a region,
+* :mod:`.scribe` starts and ends the trial and records it.
 
-``Message`` lists everything that can be said. Every message carries the trial it belongs to and,
-where it refers to a state, that state's sequence number. A part ignores what is stale, repeated or
-of another trial. :mod:`.local` carries the messages inside one process.
+``Message`` is the union of all messages. Every message contains the id of its trial and, if it
+refers to a state, the sequence number of that state. A part ignores messages that are stale,
+repeated or of another trial. :mod:`.local` passes the messages inside one process.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from blocks_planning.worlds.observation import Blocks, Observations, mask_of, st
 
 @dataclass(frozen=True)
 class TrialStarted:
-    """The trial that runs from now on. ``trial_id`` names this run of it."""
+    """The trial that runs from now on. ``trial_id`` identifies this run of it."""
 
     trial_id: str
     spec: TrialSpec
@@ -44,7 +44,7 @@ class WorldState:
 
     Attributes:
         trial_id: of the trial.
-        observations: all of them, from the board as it was found.
+        observations: all of the trial, the first one before any order.
         placements: the blocks that stand, in the order in which they landed.
         built: the cells that they fill.
         status: building, success or stuck.
@@ -97,7 +97,7 @@ class ProposalMade:
 
 @dataclass(frozen=True)
 class PlanMade:
-    """The placements about to be carried out for a subgoal, for viewers."""
+    """The placements that will be carried out for a subgoal, for viewers."""
 
     trial_id: str
     sequence: int
@@ -108,7 +108,7 @@ class PlanMade:
 
 @dataclass(frozen=True)
 class Solve:
-    """The searcher has to solve a query; the :class:`SearchAnswer` comes back to it."""
+    """A query for the searcher's driver to solve; a :class:`SearchAnswer` returns the result."""
 
     trial_id: str
     query: Query
@@ -124,22 +124,22 @@ class PlaceBlock:
 
 
 class PlacementCode(IntEnum):
-    """What became of an order; the numbers are those of the message."""
+    """The outcome of an order; the numbers are those of the ROS message."""
 
     PLACED = 1
-    """The block rests where it was ordered."""
+    """The block is where it was ordered."""
     SLIPPED = 2
     """A block landed, but elsewhere."""
     LOST = 3
-    """No block landed; the order can be given again."""
+    """No block landed; the order can be repeated."""
     COLLAPSED = 4
     """The tower fell."""
     IMPOSSIBLE = 5
-    """The block would not come to rest inside the board; nothing was tried."""
+    """The block would not come to rest inside the board; it was not tried."""
     FAILED = 6
     """No block can be placed any more: the trial has to end."""
     TRY_AGAIN = 7
-    """Not now; the order can be given again."""
+    """The world is busy; the order can be repeated."""
     IN_PROGRESS = 8
     """The order is being carried out; another outcome follows."""
 
@@ -152,8 +152,8 @@ class PlacementOutcome:
         trial_id: of the trial.
         sequence: of the state that the order referred to.
         placed: where a block landed; None if none did.
-        reason: a sentence that says why, '' for the usual one.
-        code: what became of the order.
+        reason: a sentence that says why; '' for the usual reason of the code.
+        code: the outcome.
         progress: of an order that is being carried out, from 0 to 1.
     """
 
@@ -166,7 +166,7 @@ class PlacementOutcome:
 
     @property
     def failed(self) -> bool:
-        """Whether the world can place no block on that state any more."""
+        """Whether the world cannot place any further block."""
         return self.code is PlacementCode.FAILED
 
 
@@ -182,7 +182,7 @@ class CancelTrial:
 class TrialEnded:
     """The trial is over; every part stops working on it.
 
-    ``record`` is what happened in it; only the scribe, which writes it, has it.
+    ``record`` is its record; only the message of the scribe contains it.
     """
 
     trial_id: str
@@ -193,9 +193,9 @@ class TrialEnded:
 
 @dataclass(frozen=True)
 class Remind:
-    """Send again what has not been answered; a message may have been lost.
+    """Repeat unanswered messages, because a message may have been lost.
 
-    Never needed inside a process. Each answer is the same when it is asked for twice.
+    Not needed inside one process. A repeated request gets the same answer.
     """
 
     trial_id: str

@@ -1,4 +1,4 @@
-"""Reading records back, with an error for everything that is not as :mod:`.record` writes it."""
+"""Reading records, with an error for everything that :mod:`.record` would not write."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from blocks_planning.trials.record import FORMAT, VERSION, TrialRecord
 
 
 def read_records(path: Path) -> list[TrialRecord]:
-    """Read a file of records: one in a line, or a single one laid out over several.
+    """Read a file of records: one per line, or a single one over several lines.
 
     Raises:
-        RecordError: if the file can't be read, is empty, or a record is not well formed; naming
-            file, line and key.
+        RecordError: if the file can't be read, is empty, or a record is not well formed; the
+            message names file, line and key.
     """
     try:
         text = path.read_text(encoding='utf-8')
@@ -59,7 +59,7 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(found) < len(pairs):
         keys = [key for key, _ in pairs]
         doubled = next(key for key in keys if keys.count(key) > 1)
-        raise ValueError(f'key {shown(doubled)} stands twice')
+        raise ValueError(f'key {shown(doubled)} appears twice')
     return found
 
 
@@ -67,7 +67,7 @@ class RecordTail:
     """Follows a file that records are appended to."""
 
     def __init__(self, path: Path) -> None:
-        """Begin at the end that the file has now."""
+        """Begin at the current end of the file."""
         self._path = path
         self._offset = path.stat().st_size
 
@@ -86,11 +86,11 @@ class RecordTail:
 
 
 def record_from_json(data: object, place: str) -> TrialRecord:
-    """The record that :meth:`TrialRecord.to_json` wrote as ``data``, in any version of the format.
+    """The record in ``data``, which :meth:`TrialRecord.to_json` wrote in any version of the format.
 
     Raises:
-        RecordError: beginning with ``place``, if a key is missing, unknown or of the wrong type,
-            a value is out of its range, or a sum is not the sum of its parts.
+        RecordError: with a message that begins with ``place``, if a key is missing or unknown, or a
+            value has the wrong type, is out of range, or contradicts the rest.
     """
     fields = Fields(data, place)
     version = fields.get('version', int) if fields.get('format', str) == FORMAT else None

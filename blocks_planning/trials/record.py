@@ -1,4 +1,4 @@
-"""The record of a trial: JSON in which nothing is missing and nothing depends on the clock.
+"""The record of a trial: complete, as JSON, and independent of the clock.
 
 Format ``blocks_planning/trial-record``, version 2: the keys of :meth:`TrialSpec.to_json`, then
 those of :meth:`TrialRecord.to_json`. Costs are states evaluated. Masks are hexadecimal, with bit
@@ -41,7 +41,7 @@ SUMMARY_KEYS = (
 
 @dataclass(frozen=True)
 class DecisionRecord:
-    """A decision, in which state it was made, and how far it was followed.
+    """A decision, the state in which it was made, and how far it was executed.
 
     Attributes:
         sequence: of the observation in whose state it was made.
@@ -59,9 +59,9 @@ class TrialRecord:
     """What happened in a trial.
 
     Attributes:
-        spec: what the trial was.
+        spec: specification of the trial.
         status: how it ended.
-        observations: of the board, from the board as it was found; empty if it was never seen.
+        observations: of the board, the first one before any order; empty if there were none.
         decisions: of the planner, in order.
         proposals: of a person, those that led to the decisions.
         reason: why the trial was cancelled; '' if it was not, or a user asked for it.
@@ -106,7 +106,7 @@ class TrialRecord:
 
     @property
     def surprises(self) -> int:
-        """Number of observations, after the first, that are not what was ordered."""
+        """Number of observations, after the first, that differ from the order."""
         return sum(not observation.is_as_ordered for observation in self.observations[1:])
 
     @property
@@ -130,7 +130,7 @@ class TrialRecord:
         return sum(entry.decision.subgoal_planning_cost for entry in self.decisions)
 
     def to_json(self) -> dict[str, Any]:
-        """The record as it is written: keys in a fixed order, only JSON's own types."""
+        """The record as JSON types, with keys in a fixed order."""
         return {
             'format': FORMAT,
             'version': VERSION,

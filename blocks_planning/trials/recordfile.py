@@ -1,4 +1,4 @@
-"""The file that finished records are appended to, one in a line."""
+"""The file to which finished records are appended, one per line."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from blocks_planning.trials.status import TrialStatus
 
 
 class RecordFile:
-    """A file of trial records that survives being interrupted.
+    """A file of trial records that stays valid when the writing process is interrupted.
 
-    A record is on disk when :meth:`append` returns. What an interrupted writer left of its last
-    line is put into a file of its own beside it, never deleted. Nobody else writes meanwhile.
+    A record is on disk when :meth:`append` returns. An incomplete last line of an interrupted
+    writer is moved to a separate file, never deleted. The file is locked for other writers.
     """
 
     def __init__(self, path: Path, wait_s: float = disk.LOCK_WAIT_S) -> None:
@@ -26,8 +26,8 @@ class RecordFile:
             wait_s: how long to wait for another process that writes it [s].
 
         Raises:
-            RecordError: if it can't be written, has a line that is no record, or another process
-                still writes it.
+            RecordError: if it can't be written, a line is not a record, or another process is
+                still writing it.
         """
         self._path = path
         self.finished: set[str] = set()
@@ -59,10 +59,10 @@ class RecordFile:
                 self.finished.add(trial_id)
 
     def append(self, record: TrialRecord) -> None:
-        """Write a record and see it on disk.
+        """Write a record, and return when it is on disk.
 
         Raises:
-            RecordError: if the disk does not take it; the file is as it was.
+            RecordError: if it cannot be written; the file is then unchanged.
         """
         line = record.to_line().encode() + b'\n'
         try:
@@ -78,9 +78,11 @@ class RecordFile:
 
 
 def _read(line: bytes, place: str) -> tuple[str, bool]:
-    """Which trial a record is of, and whether it came to its own end: cancelled ones did not."""
+    """The trial id of a record, and whether the trial was finished and not cancelled."""
     try:
         record = json.loads(line)
         return str(record['trial_id']), record['status'] != TrialStatus.CANCELLED.value
     except (ValueError, KeyError, TypeError, RecursionError):
-        raise RecordError(f'{place}: is not a trial record; move the file away') from None
+        raise RecordError(
+            f'{place}: is not a trial record; move the file to another place'
+        ) from None

@@ -1,4 +1,4 @@
-"""The scribe: writes down what happens in a trial, and says when it is over."""
+"""The scribe: records a trial, and announces its end."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from blocks_planning.trials.status import TrialStatus
 
 @dataclass(frozen=True)
 class Memory:
-    """What has happened so far; ``status`` is building until the trial is over.
+    """The trial so far; ``status`` is building until the trial is over.
 
     ``reason`` says why the trial was cancelled.
     """
@@ -45,7 +45,7 @@ class Memory:
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
-    """Note states and decisions, and end the trial when there is nothing to wait for."""
+    """Record states and decisions, and end the trial when nothing more is expected."""
     trial, state, chosen = memory.trial, memory.state, memory.chosen
     if isinstance(message, TrialStarted):
         same = trial is not None and trial.trial_id == message.trial_id
@@ -69,7 +69,7 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
 
 
 def _ended(memory: Memory, trial_id: str) -> tuple[TrialEnded, ...]:
-    """What the scribe says of a trial: nothing until it is over."""
+    """The message that ends a trial, once it is over."""
     if memory.status is TrialStatus.BUILDING:
         return ()
     return (TrialEnded(trial_id, memory.status, memory.reason, memory.record()),)
@@ -81,7 +81,7 @@ def _cancelled(memory: Memory, trial_id: str, reason: str) -> tuple[Memory, tupl
 
 
 def _status(memory: Memory) -> TrialStatus:
-    """How the trial stands, once state and decision are known that belong together.
+    """The status of the trial, from a state and a decision that belong together.
 
     State and subgoal arrive in either order. A board that is complete or stuck ends the trial
     when the decision that led there is known too.

@@ -3,8 +3,8 @@
 ::
 
     stimuli: [cogsci2021/5, my/towers.txt]   # addresses, as on the command line
-    library: 1x2,2x1,2x2                     # optional: the paper's library if left out
-    seeds: 4                                 # how many, from first_seed upwards
+    library: 1x2,2x1,2x2                     # optional; default: the paper's library
+    seeds: 4                                 # number of seeds, from first_seed upwards
     pause_s: 5                               # optional: between trials [s]
     first_seed: 0                            # optional
     budget: 100000                           # optional [states]
@@ -13,15 +13,15 @@
     strategies:
       - {name: none}
       - {name: scoping, lambda: {from: 0, to: 0.008, count: 5}}
-    worlds:                                  # optional: one that obeys if left out
+    worlds:                                  # optional; default: every order is obeyed
       - {name: simulated}
     built: [[2, 1, 0, 0]]                    # optional: blocks that stand at the start, each
                                              # [width, height, column, row]
 
-A setting may be a list, or evenly spaced numbers ``{from, to, count}`` with both ends: then there
-is one search, strategy or world for each value, and for each combination of values if there are
+A setting may be a list, or evenly spaced numbers ``{from, to, count}`` with both ends. Then there
+is one search, strategy or world for each value, or for each combination of values if there are
 several lists. The trials are all combinations, in the order worlds, strategies, searches, stimuli,
-seeds, the last the fastest. Paths of stimuli are relative to the working directory.
+seeds; the seed changes fastest. Paths of stimuli are relative to the working directory.
 """
 
 from __future__ import annotations
@@ -80,11 +80,12 @@ def read_session(path: Path, participant: str = '') -> Script:
 
     Args:
         path: of the file.
-        participant: code of the person in all trials whose strategy asks one; '': as in the script.
+        participant: code of the person in all trials whose strategy asks a person; '': as in the
+            script.
 
     Raises:
         ConfigurationError: naming file, line and key, for an unknown or missing key, a value
-            out of its range, a trial that is described twice, and more than ``MAX_TRIALS`` trials.
+            out of range, a trial that is described twice, or more than ``MAX_TRIALS`` trials.
     """
     script = read_yaml(path)
     top = script.entries(
@@ -131,7 +132,7 @@ def _with_participant(path: Path, strategies: list[Any], code: str) -> list[Any]
 
 
 def read_worlds(top: Mapping[str, Located]) -> list[World]:
-    """The worlds of the key ``worlds``; the one that obeys if it is left out."""
+    """The worlds of the key ``worlds``; by default one that obeys every order."""
     if 'worlds' not in top:
         return [Simulated()]
     return read_planners(top['worlds'], make_world)
@@ -193,12 +194,12 @@ def _towers(address: Located, library: Library) -> list[Tower]:
 
 
 def read_planners(listed: Located, make: Callable[[object, Mapping[str, Any]], Any]) -> list[Any]:
-    """Every thing that a list of names and settings describes."""
+    """The members of a family that a list of names and settings describes."""
     things = []
     for item in listed.items():
         entries = dict(item.mapping())
         if 'name' not in entries:
-            raise item.fail("lacks the key 'name'")
+            raise item.fail("missing key 'name'")
         name = entries.pop('name')
         name.check(partial(make, name.plain(), {}))
         _check_each(entries, partial(make, name.plain()))
@@ -225,7 +226,7 @@ def _check_each(entries: Mapping[str, Located], make: Callable[[Mapping[str, Any
 
 
 def _values(value: Located) -> list[Any]:
-    """What a setting takes: one value, those of a list, or evenly spaced ones."""
+    """The values of a setting: a single one, those of a list, or evenly spaced ones."""
     if isinstance(value.content, list):
         return [item.plain() for item in value.items()]
     if not isinstance(value.content, dict):
@@ -252,7 +253,7 @@ def _number(value: Located) -> float:
 
 
 def read_text(value: Located) -> str:
-    """A text that is not empty."""
+    """Text that is not empty."""
     if not isinstance(value.content, str) or not value.content:
-        raise value.fail(f'expected a text, got {value}')
+        raise value.fail(f'expected text, got {value}')
     return value.content

@@ -1,4 +1,4 @@
-"""The searcher: how a region is filled."""
+"""The searcher: plans how to fill a region."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ MOST_KNOWN = 1 << 17
 
 @dataclass(frozen=True)
 class Memory:
-    """What the searcher knows of the trial that runs.
+    """What the searcher knows about the running trial.
 
     Attributes:
         trial: the trial.
@@ -49,7 +49,7 @@ class Memory:
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
-    """Solve what is asked; send the placements of the subgoal, one for each state."""
+    """Solve queries; order the placements of the subgoal, one for each state."""
     trial, state, chosen = memory.trial, memory.state, memory.chosen
     if isinstance(message, TrialStarted):
         same = trial is not None and trial.trial_id == message.trial_id
@@ -77,7 +77,7 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
 def _answer(
     memory: Memory, trial_id: str, queries: Iterable[Query]
 ) -> tuple[Memory, tuple[Message, ...]]:
-    """Answer what is known; have the rest solved, unless it is being solved already."""
+    """Answer known queries; start the solves of the others, except those that are running."""
     said: list[Message] = []
     solving = set(memory.solving)
     for query in queries:
@@ -90,7 +90,7 @@ def _answer(
 
 
 def _act(memory: Memory, only_for: Query | None = None) -> tuple[Memory, tuple[Message, ...]]:
-    """Order the placement that the latest state calls for, if the subgoal leads on from it."""
+    """Order the next placement of the plan, if the latest state is on its way."""
     trial, state, chosen = memory.trial, memory.state, memory.chosen
     if trial is None or state is None or chosen is None or chosen.subgoal is None:
         return memory, ()
@@ -111,7 +111,7 @@ def _act(memory: Memory, only_for: Query | None = None) -> tuple[Memory, tuple[M
 
 
 def _next_placement(trial: TrialStarted, state: WorldState, chosen: SubgoalChosen) -> int | None:
-    """Index in the plan of the placement that the latest state calls for; None: there is none."""
+    """Index in the plan of the placement to order in the latest state; None if there is none."""
     if chosen.sequence > state.sequence:
         return None
     seen = history(trial.spec.task.board, state.observations)

@@ -1,4 +1,4 @@
-"""The selector: which region comes next."""
+"""The selector: chooses the next region."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ MOST_IN_REQUEST = 1 << 12
 
 @dataclass(frozen=True)
 class Memory:
-    """What the selector knows of the trial that runs.
+    """What the selector knows about the running trial.
 
     Attributes:
         trial: the trial.
@@ -58,7 +58,7 @@ class Memory:
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
-    """Decide in every state that no subgoal leads on from; ask for what that takes."""
+    """Make a decision in every state in which one is due; request the solves that it needs."""
     trial, state = memory.trial, memory.state
     if isinstance(message, TrialStarted):
         same = trial is not None and trial.trial_id == message.trial_id
@@ -90,7 +90,7 @@ def reason_against(memory: Memory, proposal: Proposal) -> str:
         return ''
     spec, state = memory.trial.spec, memory.state
     if not spec.strategy.asks_person:
-        return f'the strategy is {spec.strategy.name}, which asks no person'
+        return f'the strategy is {spec.strategy.name}, which does not ask a person'
     taken = proposed_at(memory.proposals, proposal.sequence)
     if proposal.number < len(taken):
         return ''
@@ -113,7 +113,7 @@ def _is_next(memory: Memory, spec: TrialSpec, proposal: Proposal) -> bool:
 def _consider(
     memory: Memory, trial: TrialStarted, state: WorldState, proposal: Proposal
 ) -> tuple[Memory, tuple[Message, ...]]:
-    """Take a proposal; a region that is known to be unsolvable is answered once more."""
+    """Accept a proposal; a region that is known to be unsolvable is answered again."""
     memory, said = _go_on(memory, trial.spec, state)
     target = target_of(trial.spec.task, state.built, proposal.region)
     query = Query(state.built, target)
@@ -128,8 +128,8 @@ def _go_on(
 ) -> tuple[Memory, tuple[Message, ...]]:
     """Make decision after decision up to the latest state, beginning with the last one made.
 
-    That is one decision at most, unless this selector was started in the middle of a trial and
-    knows nothing. Then it decides as it has decided before.
+    At most one decision is due, unless this selector was started in the middle of a trial and
+    knows no decisions. Then it makes the earlier decisions again, with the same results.
     """
     seen = history(spec.task.board, state.observations)
     chosen = memory.chosen
@@ -150,7 +150,7 @@ def _go_on(
 
 
 def due_decision(spec: TrialSpec, chosen: SubgoalChosen | None, seen: History) -> int | None:
-    """The sequence of the state in which something must be chosen next; None: not yet."""
+    """The sequence of the state in which the next decision is due; None if none is due yet."""
     if chosen is None:
         return 0
     if chosen.subgoal is None or chosen.sequence >= len(seen.states):
@@ -189,7 +189,7 @@ def _situation(
 def _decided(
     trial_id: str, before: SubgoalChosen | None, entry: DecisionRecord, situation: Situation
 ) -> SubgoalChosen:
-    """What is chosen after another decision."""
+    """The subgoal chosen after one more decision."""
     if before is None:
         before = SubgoalChosen(trial_id, entry.sequence, ())
     led_here = used(situation, entry.decision) if situation.proposals else ()

@@ -1,4 +1,4 @@
-"""The table of all settings in the documentation, made from their descriptions.
+"""The table of all settings in the documentation, generated from their descriptions.
 
 python -m blocks_planning.trials.settings_table > docs/settings.md
 """
@@ -18,10 +18,10 @@ _HEAD = """\
 
 Every search, strategy, region family and world, with its settings. A setting is an option of the
 command line (`--max-cells`), a key in scripts and sweeps (`max_cells`), part of the trial id, a
-column of the tables, and a field of records and messages. The settings of a region family stand
-beside those of the strategy that uses it.
+column of the tables, and a field of records and messages. The settings of a region family are
+given together with those of the strategy that uses it.
 
-This page is made from the descriptions in the code:
+This page is generated from the code:
 `python -m blocks_planning.trials.settings_table > docs/settings.md`.
 """
 

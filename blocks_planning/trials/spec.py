@@ -1,4 +1,4 @@
-"""What a trial is: everything that its record follows from."""
+"""The specification of a trial: everything that determines its record."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ FAMILIES: dict[str, Registry] = {
     'search': SEARCHES,
     'world': WORLDS,
 }
-"""The families of which a trial names a member each, by the attribute that holds it."""
+"""The families of which a trial has one member each, by attribute of :class:`TrialSpec`."""
 
 # Many trials share a tower.
 _drawn = lru_cache(maxsize=1024)(Board.draw)
@@ -38,18 +38,18 @@ class TrialSpec:
     """A tower to rebuild, the planner that does it, and the seed for tie-breaking.
 
     Attributes:
-        stimulus: name of the silhouette, for people; it changes nothing.
+        stimulus: name of the silhouette; it has no effect on planning.
         task: board, silhouette and block library.
         strategy: the subgoal planner.
         search: the action-level search.
         seed: 0 to 2**64 - 1.
         budget: b of every solve [states].
-        world: what becomes of orders.
+        world: it determines the outcomes of orders.
         built: blocks that stand when the trial starts, supports before what rests on them.
 
     Raises:
-        ConfigurationError: if the seed or the budget is out of its range, or the blocks cannot
-            stand as they are said to.
+        ConfigurationError: if the seed or the budget is out of its range, or the blocks of
+            ``built`` cannot stand in their places.
     """
 
     stimulus: str
@@ -70,12 +70,12 @@ class TrialSpec:
 
     @cached_property
     def trial_id(self) -> str:
-        """A name made of all of the above, the same wherever and whenever the trial is run."""
+        """An identifier derived from all attributes; the same on every machine and in every run."""
         text = json.dumps(self.to_json(), sort_keys=True)
         return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
     def to_json(self) -> dict[str, Any]:
-        """The part of a record that was known before the trial; see :mod:`.record`."""
+        """The specification as part of a record; see :mod:`.record`."""
         return {
             'stimulus': self.stimulus,
             'width': self.task.board.width,

@@ -1,4 +1,4 @@
-"""How a trial can end."""
+"""Status of a trial."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class TrialStatus(str, Enum):
-    """How a trial stands, or ended."""
+    """The current or final status of a trial."""
 
     BUILDING = 'building'
     SUCCESS = 'success'

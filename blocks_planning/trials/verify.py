@@ -1,4 +1,4 @@
-"""Verification: a record is replayed through the rules, and its decisions are computed again."""
+"""Verification: replays a record through the rules, and recomputes its decisions."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from blocks_planning.trials.verification.proposals import wrong_proposals
 
 
 def contradictions(record: TrialRecord) -> Iterator[str]:
-    """Everything in a record that does not follow from the rest, a sentence each.
+    """A sentence for everything in a record that contradicts the rest.
 
-    No search is run; see :func:`differs_from_rerun` for what that would show.
+    No search is run; :func:`differs_from_rerun` runs the trial again.
     """
     wrong = list(wrong_observations(record))
     yield from wrong
@@ -31,10 +31,10 @@ def contradictions(record: TrialRecord) -> Iterator[str]:
 
 
 def differs_from_rerun(record: TrialRecord) -> Iterator[str]:
-    """What is different when the trial is run again from its specification."""
+    """The differences from a new run of the trial."""
     if record.status is TrialStatus.CANCELLED or not record.spec.world.simulates:
         return
     again = run_trial(record.spec, proposals=record.proposals).to_json()
     for key, value in record.to_json().items():
         if again[key] != value:
-            yield f'run again, {key} is not the same'
+            yield f'a new run gives another value of {key}'

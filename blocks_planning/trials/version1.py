@@ -1,8 +1,8 @@
-"""Version 1 of the record format: read, and written only to compare.
+"""Version 1 of the record format: it is read, and written only for comparison.
 
-It knew strategies and searches with a fixed list of settings, regions that are the rows below a
-height, and worlds that carry out every order. A record of that version holds if it is what
-:func:`write` gives for the trial that :func:`read` found in it.
+It has strategies and searches with a fixed list of settings, regions that are the rows below a
+height, and worlds that carry out every order. A record of version 1 is consistent if
+:func:`write` returns it again for the trial that :func:`read` returned.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from blocks_planning.trials.version2 import read_proposal, read_task
 from blocks_planning.worlds.observation import Observation
 
 _FOR_ALL = ('lambda', 'commit')
-"""Settings that stand in every record, null where the strategy does not have them."""
+"""Settings that every record contains; null if the strategy does not have them."""
 _FOR_PERSONS = ('participant', 'costs')
 DIFFERENT_NOW = {'failure': 'give_up'}
-"""Settings whose default is not what version 1 did."""
+"""Settings whose default differs from the behaviour of version 1."""
 _OF_SEARCHES = ('depth', 'iterations', 'divisor', 'execute')
 
 
@@ -88,7 +88,7 @@ def _decision(fields: Fields, spec: TrialSpec, proposals: tuple[Proposal, ...]) 
 
 
 def drawn_in(spec: TrialSpec, built: Mask, proposals: tuple[Proposal, ...]) -> list[Region]:
-    """The regions that a person proposed in a state; only there can one be other than rows."""
+    """The regions that a person proposed in a state; only these can be other than rows."""
     if not spec.strategy.asks_person:
         return []
     situation = Situation(spec.task, built, spec.seed, {}, proposals)
@@ -130,13 +130,13 @@ def _rows(fields: Fields, task: Task, height: int) -> Region:
 
 
 def trial_id_of(spec: TrialSpec) -> str:
-    """The name that version 1 gave a trial."""
+    """The trial id in version 1."""
     text = json.dumps(_spec_to_json(spec), sort_keys=True)
     return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
 
 def write(record: TrialRecord) -> dict[str, Any]:
-    """A record as version 1 wrote it."""
+    """A record in version 1 of the format."""
     return {
         'format': 'blocks_planning/trial-record',
         'version': 1,
@@ -209,7 +209,7 @@ def _subgoal_to_json(subgoal: Subgoal) -> dict[str, Any]:
 
 
 def _heights(regions: Sequence[Region]) -> list[int]:
-    """The heights of those regions that are rows; version 1 has no word for others."""
+    """The heights of those regions that are rows; version 1 cannot express others."""
     return [region.label.numbers[0] for region in regions if _is_rows(region.label)]
 
 

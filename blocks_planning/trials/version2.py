@@ -35,7 +35,7 @@ def read(fields: Fields) -> TrialRecord:
 
 
 def read_spec(fields: Fields) -> TrialSpec:
-    """What the trial was."""
+    """The specification of the trial."""
     members: dict[str, Any] = {
         family: registry.make(fields.get(family, str), fields.get(f'{family}_settings', dict))
         for family, registry in FAMILIES.items()
@@ -91,13 +91,15 @@ def _decision(fields: Fields) -> DecisionRecord:
 def _region(fields: Fields) -> Region:
     label = fields.get('label', dict)
     if len(label) != 1:
-        raise fields.error('label', 'must be one kind with its numbers, such as {"rows": 4}')
+        raise fields.error(
+            'label', 'must have one key, the kind, with its numbers, such as {"rows": 4}'
+        )
     ((kind, numbers),) = label.items()
     if not isinstance(numbers, list):
         numbers = [numbers]
     part = Fields({'label': numbers}, fields.place)
     if len(numbers) > MAX_LABEL_NUMBERS or not all(type(n) is int for n in numbers):
-        raise part.error('label', f'must have up to {MAX_LABEL_NUMBERS} whole numbers')
+        raise part.error('label', f'must have at most {MAX_LABEL_NUMBERS} whole numbers')
     return Region(Label(kind, tuple(numbers)), fields.mask('cells'))
 
 

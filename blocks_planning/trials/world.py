@@ -28,14 +28,14 @@ TOO_MANY = f'the trial would need more than {MAX_OBSERVATIONS} observations'
 
 @dataclass(frozen=True)
 class Memory:
-    """What the world knows: the trial and the state of its board, while it runs."""
+    """What the world knows: the running trial and the state of its board."""
 
     spec: TrialSpec | None = None
     state: WorldState | None = None
 
 
 def status_of(spec: TrialSpec, blocks: Blocks, built: Mask) -> TrialStatus:
-    """How a board stands: success, stuck, collapsed or building.
+    """The status of a board: success, stuck, collapsed or building.
 
     Args:
         spec: silhouette, library and world.
@@ -63,7 +63,7 @@ def state_after(trial_id: str, spec: TrialSpec, observations: Observations) -> W
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
-    """Set the board up for a new trial; carry out an order that refers to the current state."""
+    """Set up the board for a new trial; carry out an order that refers to the current state."""
     spec, state = memory.spec, memory.state
     if isinstance(message, TrialStarted):
         if state is not None and state.trial_id == message.trial_id:
@@ -82,7 +82,7 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
 
 
 def restored(memory: Memory, observations: Observations) -> Memory | None:
-    """The world after observations that a journal kept; None if they cannot have been made."""
+    """The world after the observations of a journal; None if they are impossible."""
     spec, state = memory.spec, memory.state
     assert spec is not None
     assert state is not None
@@ -125,7 +125,7 @@ def _carry_out(
 
 
 def _code_of(seen: Observation, status: TrialStatus) -> PlacementCode:
-    """What became of the order that an observation is of."""
+    """The outcome of the order that led to an observation."""
     if status is TrialStatus.COLLAPSED:
         return PlacementCode.COLLAPSED
     if seen.is_as_ordered:

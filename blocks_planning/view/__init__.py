@@ -1,1 +1,1 @@
-"""Looking at trials: scenes, the terminal, and pictures in files."""
+"""Views of trials: scenes, the terminal, and picture files."""

@@ -1,9 +1,9 @@
 """A scene's board as text.
 
-A cell is drawn ``2 * scale`` characters wide and ``scale`` lines high, which is about square. A
-block's edge runs inside its own cells, so neighbours never share a line, and every scale, also
-the smallest, shows each block whole. Rows are labelled with heights: the region ``rows(k)`` is
-what lies at label k and below. At scale 1, while the second subgoal, ``rows(3)``, is executed::
+A cell is drawn ``2 * scale`` characters wide and ``scale`` lines high, which is about square. The
+edge of a block is inside its own cells, so neighbours never share a line, and every scale shows
+each block completely. Rows are labelled with heights: the region ``rows(k)`` contains the rows with
+labels up to k. At scale 1, while the second subgoal, ``rows(3)``, is executed::
 
      4 ░░░░  ░░
      3 ╔╗▒▒  ▒▒
@@ -52,9 +52,9 @@ def board_text(scene: Scene, scale: int = 1, signs: Signs = palette.UNICODE) -> 
     """Draw the board of a scene.
 
     Args:
-        scene: what there is to see.
+        scene: the scene.
         scale: lines for each row, 1 or more.
-        signs: the characters to draw with.
+        signs: the characters of the terminal.
 
     Returns:
         Lines of equal width (see :func:`size_at`), without a newline at the end.
@@ -94,7 +94,7 @@ def _paint(
 
 
 def _to_text(canvas: _Canvas, scale: int, scene: Scene, signs: Signs) -> Text:
-    """Put the labels and the ground to the cells; the top row of the current region is bold."""
+    """Add the labels and the ground to the cells; the top row of the current region is bold."""
     goal = scene.top
     text = Text(no_wrap=True, overflow='crop')
     for line, cells in enumerate(canvas, start=1):

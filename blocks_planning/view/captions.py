@@ -1,4 +1,4 @@
-"""The words and numbers that stand beside a tower, the same wherever it is drawn."""
+"""Captions of a tower: words and numbers, the same in every view."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def search_of(spec: TrialSpec) -> str:
 
 
 def _with_settings(thing: Any) -> str:
-    """A name with its first setting, if that is a number, and all that are not the default."""
+    """A name with its first setting, if that is a number, and all settings without the default."""
     return ', '.join([thing.name, *_settings(thing)])
 
 
@@ -73,7 +73,7 @@ def counted(count: int, noun: str) -> str:
 
 
 def progress_of(scene: Scene) -> str:
-    """How much was built, such as '12 blocks, 3 subgoals'."""
+    """The progress, such as '12 blocks, 3 subgoals'."""
     record = scene.record
     return f'{counted(record.blocks, "block")}, {counted(record.subgoals, "subgoal")}'
 
@@ -88,12 +88,12 @@ def costs_of(scene: Scene) -> str:
 
 
 def heading_of(scene: Scene, width: int, signs: Signs = palette.UNICODE) -> list[str]:
-    """What stands above a picture: stimulus and status, strategy, search, progress, costs.
+    """The heading of a picture: stimulus and status, strategy, search, progress, costs.
 
     Args:
-        scene: what there is to see.
-        width: of the first line at most [characters].
-        signs: that can be shown.
+        scene: the scene.
+        width: largest width of the first line [characters].
+        signs: the characters of the terminal.
     """
     spec, status = scene.spec, STATUS_WORDS[scene.status]
     return [
@@ -114,8 +114,8 @@ def outcome_of(scene: Scene, signs: Signs = palette.UNICODE) -> str:
 def shortlist(decision: Decision, most: int) -> list[int]:
     """Indices of the candidates to show, in the order in which to show them.
 
-    All of them as they come, if they are ``most`` or fewer; else the chosen one and the best of
-    the rest, by value.
+    All of them in their order, if they are ``most`` or fewer; otherwise the chosen one and the best
+    of the rest, by value.
     """
     candidates = decision.candidates
     if len(candidates) <= most:
@@ -144,7 +144,7 @@ def numbers_of(candidate: Candidate) -> list[str]:
 
 
 def common_kind(candidates: Sequence[Candidate]) -> str:
-    """The kind of all labels of some candidates; '' if there are several kinds, or none."""
+    """The common kind of the labels of some candidates; '' if there are several kinds, or none."""
     kinds = {region.label.kind for candidate in candidates for region in candidate.regions}
     return kinds.pop() if len(kinds) == 1 else ''
 
@@ -152,13 +152,13 @@ def common_kind(candidates: Sequence[Candidate]) -> str:
 def regions_of(
     candidate: Candidate, width: int, signs: Signs = palette.UNICODE, kind: str = ''
 ) -> str:
-    """The labels of a candidate's regions in at most ``width`` characters, the last left out.
+    """The labels of a candidate's regions in at most ``width`` characters; the last ones are cut.
 
     Args:
-        candidate: whose regions.
-        width: at most [characters].
-        signs: that can be shown.
-        kind: left out of labels, because a heading names it.
+        candidate: the candidate.
+        width: largest width [characters].
+        signs: the characters of the terminal.
+        kind: omitted from labels, because a heading names it.
 
     >>> from blocks_planning.subgoals.regions import Label
     >>> rows = [Region(Label('rows', (height,)), 0) for height in (1, 3, 8)]

@@ -1,7 +1,7 @@
 """A scene's board as text in its smallest form: two rows of cells on a line.
 
-A cell is one character wide and half a line high. Blocks are told apart by their colours only, so
-this form is for boards that are too high, or too wide, for the terminal in any other form (see
+A cell is one character wide and half a line high. Blocks differ only in colour, so this
+form is for boards that are too high or too wide for the terminal in any other form (see
 :mod:`.board`). Where one half of a character is filled, the other half shows as background: grey
 for a target cell, dark for a cell of the current region.
 """
@@ -20,7 +20,7 @@ from blocks_planning.view.scene import Scene
 
 _TARGET = '#808080'
 _DARK = -0.6
-"""How far the colour of a region leans towards black."""
+"""Share of black in the colour of a region."""
 
 
 def compact_size(board: Board) -> tuple[int, int]:
@@ -32,8 +32,8 @@ def compact_text(scene: Scene, signs: Signs = palette.UNICODE) -> Text:
     """Draw the board of a scene.
 
     Args:
-        scene: what there is to see.
-        signs: the characters to draw with.
+        scene: the scene.
+        signs: the characters of the terminal.
 
     Returns:
         Lines of equal width (see :func:`compact_size`), without a newline at the end.
@@ -79,7 +79,7 @@ def _sign(scene: Scene, cells: tuple[Cell, Cell], fills: dict[Cell, str], signs:
 
 
 def _open_sign(scene: Scene, cells: tuple[Cell, Cell], signs: Signs) -> Text:
-    """The character of two cells of which none is filled."""
+    """The character of two empty cells."""
     if any(_is_in(scene, cell, scene.region) for cell in cells):
         return Text(signs.region, Style(color=palette.colour_of(scene.record.subgoals - 1)))
     if any(_is_in(scene, cell, scene.task.silhouette) for cell in cells):
@@ -88,7 +88,7 @@ def _open_sign(scene: Scene, cells: tuple[Cell, Cell], signs: Signs) -> Text:
 
 
 def _background(scene: Scene, cell: Cell) -> str | None:
-    """The colour behind a half that is not filled."""
+    """The background colour of an empty half."""
     if _is_in(scene, cell, scene.region):
         return palette.blend(palette.colour_of(scene.record.subgoals - 1), _DARK)
     return _TARGET if _is_in(scene, cell, scene.task.silhouette) else None

@@ -21,7 +21,7 @@ _UNFIT = re.compile(r'[^A-Za-z0-9._]+')
 
 
 class Gallery(NamedTuple):
-    """Pictures that were drawn; ``left_out`` is the number of trials beyond."""
+    """The drawn pictures; ``left_out`` is the number of trials without one."""
 
     folder: Path
     paths: tuple[Path, ...]
@@ -29,7 +29,7 @@ class Gallery(NamedTuple):
 
 
 def save_gallery(records: Sequence[TrialRecord], folder: Path, most: int) -> Gallery:
-    """Draw the first trials, at most so many, as SVG; what was drawn before is replaced.
+    """Draw up to ``most`` trials as SVG; existing pictures are replaced.
 
     Raises:
         ConfigurationError: if the folder or a picture can't be written.
@@ -46,7 +46,7 @@ def save_gallery(records: Sequence[TrialRecord], folder: Path, most: int) -> Gal
 
 
 def print_gallery(gallery: Gallery, console: Console | None = None) -> None:
-    """Say where the pictures are; in a terminal that can, with a link to each."""
+    """Print where the pictures are; with a link to each, if the terminal supports links."""
     console = console or Console()
     folder = Text('Pictures: ')
     folder.append(str(gallery.folder), style=_link(gallery.folder))
@@ -69,7 +69,7 @@ def _names(specs: Iterator[TrialSpec]) -> Iterator[str]:
     for spec in specs:
         stimulus = _UNFIT.sub('-', spec.stimulus)[-_STIMULUS_CHARACTERS:].strip('-.')
         name = f'{stimulus}-{spec.strategy.name}-{spec.search.name}-seed{spec.seed}'
-        if name in seen:  # another lambda, say: the settings are not in the name
+        if name in seen:  # such as another lambda: settings are not in the name
             name = f'{name}-{spec.trial_id[:8]}'
         seen.add(name)
         yield name

@@ -10,9 +10,9 @@ _PART = re.compile(r'[^/_.\s-]*[/_.\s-]*')
 
 
 def broken(name: str, width: int) -> str:
-    """A name on as many lines as it needs, broken behind '/', '-', '_', '.' and blanks.
+    """A name on as many lines as needed, broken after '/', '-', '_', '.' and blanks.
 
-    Only a part that is longer than a line is broken inside. Nothing is left out.
+    Only a part that is longer than a line is broken inside. Nothing is omitted.
 
     Args:
         name: such as an address.

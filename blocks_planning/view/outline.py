@@ -25,7 +25,7 @@ def outline(board: Board, mask: Mask) -> Iterator[tuple[tuple[int, int], tuple[i
 
 
 def _runs(marks: Iterable[bool]) -> Iterator[tuple[int, int]]:
-    """Where each run of true values begins, and where it is over."""
+    """The begin and the end of each run of true values."""
     for marked, run in groupby(enumerate(marks), key=lambda item: item[1]):
         if marked:
             indices = [index for index, _ in run]

@@ -1,12 +1,12 @@
 """The colours and signs of everything that is drawn.
 
-A colour stands for a subgoal of the trial, a tint tells blocks of one subgoal apart where they
-touch, and so does a block's edge. Nothing is said by colour alone: in a terminal the kind of line
-also changes with the subgoal.
+A colour represents a subgoal of the trial; tints and edges distinguish touching blocks of one
+subgoal. No information is in the colour alone: in a terminal the kind of line also changes with the
+subgoal.
 
 The hues are those of Okabe and Ito (2008), *Color Universal Design*, without black and with a
-darker yellow, so that each is seen on a dark and on a light background. They are ordered so that
-consecutive subgoals, which lie on one another, differ most for colour-blind people.
+darker yellow, so that each is visible on a dark and on a light background. They are ordered so that
+consecutive subgoals, which touch each other, differ most for colour-blind people.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from typing import NamedTuple
 from blocks_planning.view.scene import BuiltBlock
 
 COLOURS = ('#56b4e9', '#e69f00', '#009e73', '#d55e00', '#cc79a7', '#ccb800', '#0072b2')
-"""One for each subgoal, over and over."""
+"""One colour for each subgoal, repeated cyclically."""
 
 FOUND_COLOUR = '#9e9e9e'
-"""Of blocks that stood at the start, or appeared by themselves."""
+"""Colour of blocks that stood at the start, or appeared by themselves."""
 
 TINTS = (0.0, 0.4, -0.22, -0.42)
-"""How far a tint leans towards white (1), or black (-1)."""
+"""Shares of white (above 0) or black (below 0) in tints."""
 
 GOOD, BAD = '#009e73', '#d55e00'
-"""How a trial ended; the words beside say it too."""
+"""Colours of the end of a trial; a word always shows it too."""
 
 
 def blend(colour: str, share: float) -> str:
-    """A colour that leans towards white by a share from 0 to 1, or towards black from 0 to -1.
+    """A colour mixed with white by a share from 0 to 1, or with black by a share from 0 to -1.
 
     >>> blend('#0072b2', 0.5)
     '#80b8d8'
@@ -49,7 +49,7 @@ def colour_of(subgoal: int) -> str:
 
 
 def ink_on(colour: str) -> str:
-    """Black or white, whichever is read better on a colour (relative luminance of WCAG 2)."""
+    """Black or white, whichever is more legible on a colour (relative luminance of WCAG 2)."""
     levels = (level / 255 for level in bytes.fromhex(colour.removeprefix('#')))
     linear = [v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4 for v in levels]
     luminance = sum(map(float.__mul__, (0.2126, 0.7152, 0.0722), linear))
@@ -59,8 +59,8 @@ def ink_on(colour: str) -> str:
 def fills_of(blocks: Sequence[BuiltBlock]) -> list[str]:
     """The colour of each block, as '#rrggbb'.
 
-    A block keeps its colour when more are placed. Blocks of one subgoal that touch get different
-    tints, as far as there are enough.
+    A block keeps its colour when more are placed. Touching blocks of one subgoal get different
+    tints, if there are enough.
     """
     tints: list[int] = []
     for index, block in enumerate(blocks):
@@ -113,8 +113,8 @@ class Signs(NamedTuple):
         halves: of a compact board: the upper half filled, the lower half, both.
         ground: below the board.
         marker: the candidate that was chosen.
-        more: where something was left out.
-        encoding: of all that can be shown.
+        more: marks an omission.
+        encoding: of the terminal.
     """
 
     frames: tuple[Frame, ...]
@@ -127,7 +127,7 @@ class Signs(NamedTuple):
     encoding: str
 
     def shown(self, text: str) -> str:
-        """A text in which '?' stands for everything that can't be shown on one line."""
+        """A text on one line, with '?' for every character that can't be shown."""
         printable = ''.join(sign if sign.isprintable() else '?' for sign in text)
         return printable.encode(self.encoding, 'replace').decode(self.encoding)
 

@@ -1,4 +1,4 @@
-"""What stands beside the board in a terminal: the trial, how far it is, and the last decision."""
+"""The panel beside the board in a terminal: the trial, its progress, and the last decision."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from blocks_planning.view.palette import Signs
 from blocks_planning.view.scene import Scene
 
 MIN_WIDTH = 36
-"""Narrowest panel in which a usual table keeps its columns [characters]."""
+"""Least width of a panel with all columns of a typical table [characters]."""
 
 _STATUS_STYLES = {
     TrialStatus.BUILDING: Style(bold=True),
@@ -27,10 +27,10 @@ def panel(scene: Scene, width: int, height: int, signs: Signs = palette.UNICODE)
     """Draw the panel of a scene.
 
     Args:
-        scene: what there is to see.
-        width: of every line, at most [characters].
-        height: lines, at most. Candidates are left out, and counted, where there are too many.
-        signs: the characters to draw with.
+        scene: the scene.
+        width: largest width of a line [characters].
+        height: largest number of lines. If there are too many candidates, the rest are counted.
+        signs: the characters of the terminal.
 
     Returns:
         Lines without a newline at the end.
@@ -61,7 +61,7 @@ def _lines_about_trial(scene: Scene, width: int, signs: Signs) -> list[Text]:
 
 
 def _activity(scene: Scene) -> str:
-    """What is going on, to follow the status."""
+    """The current activity, to follow the status."""
     if scene.status is not TrialStatus.BUILDING:
         return ''
     if scene.subgoal is None or not scene.region:
@@ -70,14 +70,14 @@ def _activity(scene: Scene) -> str:
 
 
 def _wrapped(label: str, text: str, width: int) -> list[Text]:
-    """A label and a text on as many lines as it needs."""
+    """A label and a text, on as many lines as needed."""
     indent = ' ' * len(label)
     lines = wrap(text, max(width, 2 * len(label)), initial_indent=label, subsequent_indent=indent)
     return [Text(line) for line in lines]
 
 
 def _lines_about(decision: Decision, width: int, height: int, signs: Signs) -> list[Text]:
-    """A heading and a table of candidates, with a last line that counts what is left out."""
+    """A heading and a table of candidates; the last line counts the omitted ones."""
     total = len(decision.candidates)
     lines_left = max(height - 2, 1)
     most = lines_left if total <= lines_left else max(lines_left - 1, 1)

@@ -1,7 +1,6 @@
 """Pictures of trials in files: the finished tower, or its building block by block.
 
-The same record gives the same bytes, as long as the versions of matplotlib and pillow are the
-same.
+With the same versions of matplotlib and pillow, the same record gives the same bytes.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ LINE_INCHES = 0.2
 TITLE_INCHES = 1.2
 MARGIN_INCHES = 0.15
 TITLE_SHARE = 0.95
-"""How much of the width a title may take; its letters get smaller if there are too many."""
+"""Share of the width that a title may take; a longer one gets smaller letters."""
 TITLE_CHARACTERS = 60
 
 DPI = 150
@@ -44,10 +43,10 @@ LAST_FRAME_MS = 3000
 
 INK, GRID, TARGET, PAPER = '#000000', '#ffffff', '#e4e4e4', '#ffffff'
 REGION_SHARE = 0.6
-"""How far the colour of cells that are to be filled leans towards white."""
+"""Share of white in the colour of cells that will be filled."""
 
 _TITLED = ('.svg', '.pdf')
-"""These carry the outcome also as text, for tooltips and screen readers."""
+"""Formats that also contain the outcome as text, for tooltips and screen readers."""
 _METADATA: dict[str, dict[str, Any]] = {
     '.png': {'Software': None},
     '.svg': {'Date': None, 'Creator': 'blocks_planning'},
@@ -65,7 +64,7 @@ _STYLE = {
 
 
 def check_picture_path(path: Path) -> None:
-    """Refuse a path whose suffix is not one of ``SUFFIXES``, in capitals or not.
+    """Refuse a path whose suffix is not one of ``SUFFIXES``, in upper or lower case.
 
     Raises:
         ConfigurationError: naming the suffix and those that can be used.
@@ -82,10 +81,10 @@ def save_picture(record: TrialRecord, path: Path) -> None:
 
     Args:
         record: the trial.
-        path: .png, .svg and .pdf show how it ended, .gif how it went on.
+        path: .png, .svg and .pdf show the end, .gif all steps.
 
     Raises:
-        ConfigurationError: if the suffix is another one, or the file can't be written.
+        ConfigurationError: if the suffix is unknown, or the file can't be written.
     """
     check_picture_path(path)
     suffix = path.suffix.lower()
@@ -101,8 +100,8 @@ def draw_scene(axes: Axes, scene: Scene) -> None:
 
     Args:
         axes: gets the limits of the board [cells], equal scales and no ticks. Lines and numbers
-            are sized for the place that it has in its figure now.
-        scene: what there is to see.
+            are scaled to its current size.
+        scene: the scene.
     """
     board, silhouette = scene.task.board, scene.task.silhouette
     cell = _cell_points(axes, board)
@@ -189,10 +188,10 @@ def _figure(scene: Scene) -> Figure:
 
 
 def _drawn(scene: Scene, suffix: str, dpi: int) -> bytes:
-    """A file with a scene."""
+    """The bytes of a file with a scene."""
     file = BytesIO()
     with mpl.rc_context(_STYLE), warnings.catch_warnings():
-        # The name of a stimulus may hold signs that the font lacks; they become boxes.
+        # The name of a stimulus may contain characters that the font lacks; they become boxes.
         warnings.filterwarnings('ignore', 'Glyph .* missing', UserWarning)
         figure = _figure(scene)
         metadata = {**_METADATA[suffix]}
@@ -215,7 +214,7 @@ def _animation(record: TrialRecord) -> bytes:
 
 
 def image_of(scene: Scene) -> Image.Image:
-    """A scene as a picture in memory, for films that show something else beside it."""
+    """A scene as a picture in memory, for films with several pictures."""
     with Image.open(BytesIO(_drawn(scene, '.png', ANIMATION_DPI))) as image:
         return image.convert('RGB')
 

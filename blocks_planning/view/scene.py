@@ -1,4 +1,4 @@
-"""What there is to see of a trial at one moment, in any drawing.
+"""The visible state of a trial at one moment, for every view.
 
 A :class:`Scene` is folded from the messages of a trial, live (:func:`scene_after`) or replayed
 from its record (:func:`scenes_of`). Both give the same scenes.
@@ -30,7 +30,7 @@ from blocks_planning.trials.status import TrialStatus
 from blocks_planning.worlds.observation import Observation, Observations
 
 FOUND = -1
-"""The subgoal of a block that no subgoal placed: it stood at the start, or appeared by itself."""
+"""Marks a block that no subgoal placed: it stood at the start, or appeared by itself."""
 
 
 class BuiltBlock(NamedTuple):
@@ -45,8 +45,8 @@ class Scene:
     """A trial at one moment.
 
     Attributes:
-        trial: which one.
-        observations: of the board so far.
+        trial: the trial.
+        observations: of the board, so far.
         chosen: the subgoal that was begun last, with all decisions so far.
         status: building, until the trial is over.
         reason: why the trial was cancelled.
@@ -60,12 +60,12 @@ class Scene:
 
     @property
     def spec(self) -> TrialSpec:
-        """What the trial was started with."""
+        """The specification of the trial."""
         return self.trial.spec
 
     @property
     def task(self) -> Task:
-        """What is to be built."""
+        """The task."""
         return self.spec.task
 
     @property
@@ -152,7 +152,7 @@ class Scene:
 
     @cached_property
     def record(self) -> TrialRecord:
-        """What the record would be if the trial were over now; it has all counts and costs."""
+        """The record if the trial were over now, with all counts and costs."""
         return TrialRecord(
             spec=self.spec,
             status=self.status,
@@ -168,20 +168,20 @@ class Scene:
 
 
 def scene_of(spec: TrialSpec) -> Scene:
-    """The scene before anything has happened."""
+    """The scene before the start of a trial."""
     return first_scene(TrialStarted(spec.trial_id, spec))
 
 
 def first_scene(trial: TrialStarted) -> Scene:
-    """The scene of a trial that has just started: the board as its specification says."""
+    """The scene of a trial that has just started, with the board of its specification."""
     return Scene(trial, (Observation(landed=trial.spec.built),))
 
 
 def scene_after(scene: Scene, message: Message) -> Scene:
-    """The scene after a message; the same object if there is nothing new to see.
+    """The scene after a message; the same object if nothing changed.
 
-    Another trial that starts clears the scene. What is stale, doubled or of another trial is
-    ignored. States and subgoals may come in either order.
+    The start of another trial clears the scene. Messages that are stale, repeated or of another
+    trial are ignored. States and subgoals may arrive in either order.
     """
     if message.trial_id != scene.trial.trial_id:
         return first_scene(message) if isinstance(message, TrialStarted) else scene
@@ -196,7 +196,7 @@ def scene_after(scene: Scene, message: Message) -> Scene:
 
 
 def _is_news(state: WorldState, scene: Scene) -> bool:
-    """Whether a state has more observations, or the board was not found as it was specified."""
+    """Whether a state has more observations, or its first one differs from the specification."""
     known, said = len(scene.observations), len(state.observations)
     return said > known or (said == known == 1 and state.observations != scene.observations)
 

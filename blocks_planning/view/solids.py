@@ -1,4 +1,4 @@
-"""A scene in space: boxes, lines and words, for viewers of robots such as RViz and Foxglove.
+"""A scene in three dimensions: boxes, lines and text, for viewers such as RViz and Foxglove.
 
 All lengths are in cells. The tower stands in the x-z plane: columns go along +x, rows along +z, and
 it is one cell deep along +y, so that a view along +y shows the board as it is drawn elsewhere.
@@ -19,30 +19,30 @@ from blocks_planning.view.scene import Scene
 Point: TypeAlias = tuple[float, float, float]
 
 GAP = 0.03
-"""Between the face of a block and the cells that it fills: it makes edges visible [cells]."""
+"""Gap between the face of a block and its cells, which makes edges visible [cells]."""
 GROUND_THICKNESS = 0.1
 OUTLINE_WIDTH, FRAME_WIDTH = 0.08, 0.02
 TEXT_ABOVE = 0.5
-"""From the board to the lowest line of text [cells]."""
+"""Distance from the board to the lowest line of text [cells]."""
 LINE_SPACING, CHARACTER_WIDTH = 1.8, 0.75
-"""From line to line, and from letter to letter on average, for letters of height 1."""
+"""Line spacing, and mean letter spacing, for letters of height 1."""
 LETTER_HEIGHTS = (0.25, 0.5)
-"""Least and most [cells]."""
+"""Smallest and largest height of letters [cells]."""
 TITLE_CHARACTERS = 60
 
 INK, TEXT_INK = '#8c8c8c', '#d9d9d9'
-"""Lines are seen on a dark background and on a light one, text on a dark one."""
+"""Lines are visible on dark and light backgrounds, text on dark ones."""
 REGION_OPACITY = 0.4
 _ENDED = {TrialStatus.BUILDING: TEXT_INK, TrialStatus.SUCCESS: palette.GOOD}
 
 
 @dataclass(frozen=True)
 class Solid:
-    """Something to see.
+    """An object in the scene.
 
     Attributes:
-        layer: what it stands for; a viewer can hide a layer.
-        number: tells the solids of a layer apart.
+        layer: its kind; a viewer can hide a layer.
+        number: unique within its layer.
         colour: as '#rrggbb'.
     """
 
@@ -61,7 +61,7 @@ class Box(Solid):
 
 @dataclass(frozen=True)
 class Boxes(Solid):
-    """Boxes of one size [cells]; ``opacity`` is from 0, not seen, to 1."""
+    """Boxes of one size [cells]; ``opacity`` is from 0 (invisible) to 1."""
 
     centres: tuple[Point, ...]
     size: Point
@@ -70,7 +70,7 @@ class Boxes(Solid):
 
 @dataclass(frozen=True)
 class Lines(Solid):
-    """Straight lines of a width [cells]; two consecutive ``ends`` are one."""
+    """Straight lines of a width [cells]; two consecutive ``ends`` form one line."""
 
     ends: tuple[Point, ...]
     width: float
@@ -86,7 +86,7 @@ class Words(Solid):
 
 
 def solids_of(scene: Scene) -> list[Solid]:
-    """Everything there is to see of a scene; no two have the same layer and number."""
+    """All solids of a scene; no two have the same layer and number."""
     return [
         _ground(scene),
         _frame(scene),
@@ -145,7 +145,7 @@ def _blocks(scene: Scene) -> Iterator[Box]:
 
 
 def _region(scene: Scene) -> Iterator[Boxes]:
-    """What the current subgoal has still to fill, in the colour that its blocks will have."""
+    """The unfilled cells of the current subgoal, in the colour of its blocks."""
     cells = scene.task.board.cells(scene.region)
     centres = tuple((column + 0.5, 0.5, row + 0.5) for column, row in cells)
     if centres:
@@ -155,9 +155,9 @@ def _region(scene: Scene) -> Iterator[Boxes]:
 
 
 def _words(scene: Scene) -> Iterator[Words]:
-    """Stimulus, status, planner and costs, above the board; as wide as it, if that is legible.
+    """Stimulus, status, planner and costs, above the board; of its width, if that is legible.
 
-    Each line is a solid of its own: viewers do not agree on the space between lines.
+    Each line is a separate solid, because viewers differ in line spacing.
     """
     board = scene.task.board
     lines = captions.heading_of(scene, TITLE_CHARACTERS, palette.ASCII)
@@ -174,5 +174,5 @@ def _words(scene: Scene) -> Iterator[Words]:
 
 
 def _are_costs_hidden(scene: Scene) -> bool:
-    """Whether planning costs must not be seen yet."""
+    """Whether planning costs must be hidden."""
     return scene.spec.strategy.hides_costs and scene.status is TrialStatus.BUILDING

@@ -26,7 +26,7 @@ _COLUMNS = ('blocks', 'subgoals', 'action cost', 'subgoal cost', 'solution cost'
 
 
 def print_summaries(records: Sequence[TrialRecord], console: Console | None = None) -> None:
-    """Print a summary for each planner, in the order in which they come first."""
+    """Print a summary for each planner, in the order of first appearance."""
     by_planner: dict[str, list[TrialRecord]] = {}
     for record in records:
         by_planner.setdefault(_planner(record), []).append(record)
@@ -35,7 +35,7 @@ def print_summaries(records: Sequence[TrialRecord], console: Console | None = No
 
 
 def print_summary(records: Sequence[TrialRecord], console: Console | None = None) -> None:
-    """Print a row per stimulus: its one trial, or means over its successful trials.
+    """Print a row per stimulus: its only trial, or means over its successful trials.
 
     Costs are states evaluated; those of action and subgoal planning count every attempt.
     """
@@ -48,7 +48,7 @@ def print_summary(records: Sequence[TrialRecord], console: Console | None = None
         caption=_caption(records, single),
         caption_justify='left',
     )
-    # Numbers are never cut. A long name takes what room is left, and several lines.
+    # Numbers are never cut. A long name uses the remaining width, on several lines.
     rows = [_row(group, single) for group in groups]
     titles = ['status' if single else 'success', *_COLUMNS]
     widths = [
@@ -69,7 +69,7 @@ def print_summary(records: Sequence[TrialRecord], console: Console | None = None
 
 
 def print_proposals(records: Sequence[TrialRecord], console: Console | None = None) -> None:
-    """Print the proposals of each trial in which a person scoped; nothing if there is none.
+    """Print the proposals of each trial of a person; nothing if there is none.
 
     Thinking time is the time before each proposal, withdrawn ones included [s].
     """
@@ -96,7 +96,7 @@ def print_proposals(records: Sequence[TrialRecord], console: Console | None = No
 
 
 def _proposed(record: TrialRecord) -> list[str]:
-    """Counts of regions proposed, built and withdrawn; and the thinking time."""
+    """Numbers of regions proposed, built and withdrawn, and the thinking time."""
     kinds = [proposal.kind for proposal in record.proposals]
     seconds = [proposal.thinking_s for proposal in record.proposals]
     return [

@@ -23,29 +23,29 @@ from blocks_planning.view.panel import MIN_WIDTH, panel
 from blocks_planning.view.scene import Scene, last_scene, scene_after, scene_of
 
 GAP = 3
-"""Between board and panel [characters]."""
+"""Space between board and panel [characters]."""
 PANEL_LINES = 8
-"""Lines of the panel without a decision, where no setting needs a line of its own."""
+"""Number of lines of the panel without a decision, if no setting needs an extra line."""
 ROOM = 2
 """Lines below the frame for the cursor and for what is printed next."""
 PATIENCE_S = 0.02
-"""How often a pause looks whether the trial was cancelled [s]."""
+"""Period at which a pause checks whether the trial was cancelled [s]."""
 
 
 def watch_trial(
     spec: TrialSpec, console: Console, cancel: CancelToken, pause_s: float
 ) -> TrialRecord:
-    """Run a trial and show how it goes on.
+    """Run a trial and show its progress.
 
-    In a terminal every decision and placement is drawn over the one before. Anything else, such
-    as a pipe or a terminal that can't move its cursor, gets the last picture and a line on how
-    the trial ended.
+    In a terminal every decision and placement replaces the previous picture. Other outputs, such as
+    a pipe or a terminal that can't move its cursor, get the last picture and a line about the end
+    of the trial.
 
     Args:
         spec: the trial.
         console: where to draw.
         cancel: ends the trial, and a pause, from another thread or a signal handler.
-        pause_s: how long every decision and placement stays [s]; plays no part outside a terminal.
+        pause_s: duration of the display of each decision and placement [s]; only in a terminal.
     """
     if console.is_interactive and console.file.isatty():
         return _watch_live(spec, console, cancel, pause_s)
@@ -55,7 +55,7 @@ def watch_trial(
 
 
 def print_outcome(record: TrialRecord, console: Console) -> None:
-    """Print the last picture of a trial, and a line on how it ended."""
+    """Print the last picture of a trial, and a line about its end."""
     scene = last_scene(record)
     board = scene.task.board
     scale = min(scale_for(board, console.width, console.height - ROOM), 2)
@@ -67,11 +67,11 @@ def print_outcome(record: TrialRecord, console: Console) -> None:
 
 
 def frame(scene: Scene, width: int, height: int, signs: Signs = palette.UNICODE) -> Table:
-    """A scene's board and panel, beside each other or, if that is too wide, on one another.
+    """The board and panel of a scene, side by side or, if that is too wide, one above the other.
 
     The board is drawn as large as ``width`` x ``height`` characters allow; in its compact form if
-    nothing else leaves room for it and for ``PANEL_LINES`` lines of the panel. If that is too
-    large too, its lowest rows are drawn, and a line says what size would do.
+    no other form leaves room for ``PANEL_LINES`` lines of the panel. If the compact form is also
+    too large, only its lowest rows are drawn, with a line that tells the required size.
     """
     board = scene.task.board
     scale = scale_for(board, width - GAP - MIN_WIDTH, height)
@@ -98,7 +98,7 @@ def _fits(wide: int, high: int, width: int, height: int) -> bool:
 
 
 def _lowest_lines(picture: Text, wide: int, high: int, width: int, height: int) -> Text:
-    """A picture of ``wide`` x ``high`` characters, without what does not fit; if so, it says so."""
+    """The lowest lines that fit of a picture of ``wide`` x ``high`` characters, with a note."""
     if high <= height and wide <= width:
         return picture
     note = Text(f'too small: needs {wide} x {high + ROOM}')
@@ -138,7 +138,7 @@ def _watch_live(
 
 
 def wait(cancel: CancelToken, duration_s: float) -> None:
-    """Wait, but not longer than until the token is used."""
+    """Wait for a duration [s], or until the token is cancelled."""
     end = monotonic() + duration_s
     while not cancel.cancelled and (left := end - monotonic()) > 0:
         sleep(min(left, PATIENCE_S))

@@ -1,1 +1,1 @@
-"""Worlds: what becomes of an order, and what has been observed."""
+"""Worlds: the outcomes of orders, and observations of the board."""

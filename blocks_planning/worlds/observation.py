@@ -1,8 +1,8 @@
-"""What was ordered, and what is there: the history of a board.
+"""The history of a board: what was ordered and what was observed.
 
-A planner orders a placement. The world observes which blocks stand where, and the observation is
-the truth, whatever was ordered. Observations of a trial are numbered from 0, the board as it was
-found; the number of the latest is the *sequence* of the state.
+A planner orders a placement. The world observes which blocks are where. The observation counts,
+even if it differs from the order. Observations of a trial are numbered from 0, the board before the
+first order; the number of the latest is the *sequence* of the state.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from blocks_planning.board.blocks import Placed, Placement
 from blocks_planning.board.geometry import Board, Mask
 
 MAX_OBSERVATIONS = 1024
-"""Most observations of a trial, the first included; a trial that would need more is ended."""
+"""Most observations of a trial, the first included; a trial that would need more ends."""
 
 Blocks = tuple[Placed, ...]
 """The blocks that stand, in the order in which they landed."""
@@ -94,7 +94,7 @@ def states_of(board: Board, observations: Iterable[Observation]) -> list[Mask]:
 
 
 def impossible(board: Board, blocks: Blocks) -> str:
-    """Why blocks cannot stand on a board as they are said to; '' if they can.
+    """Why blocks cannot stand on a board in these places; '' if they can.
 
     Each lies inside, none overlaps another, and each rests on the ground or on a block.
     """
@@ -104,7 +104,7 @@ def impossible(board: Board, blocks: Blocks) -> str:
             return f'block {shown_block(placed)} does not lie inside the board'
         cells = rules.cells_of(board, placed)
         if cells & filled:
-            return f'block {shown_block(placed)} overlaps another'
+            return f'block {shown_block(placed)} overlaps another block'
         filled |= cells
     for placed in blocks:
         if placed.row and not rules.cells_of(board, below(placed)) & filled:
@@ -118,10 +118,10 @@ def below(placed: Placed) -> Placed:
 
 
 def wrong_change(blocks: Blocks, observation: Observation) -> str:
-    """Why an observation does not fit the blocks that stood before; '' if it does."""
+    """Why an observation contradicts the blocks that stood before; '' if it does not."""
     missing = [placed for placed in observation.gone if placed not in blocks]
     if missing:
-        return f'block {shown_block(missing[0])} is gone, but it did not stand'
+        return f'block {shown_block(missing[0])} is gone, but it was not on the board'
     return ''
 
 

@@ -1,7 +1,8 @@
-"""Worlds by name: what becomes of an order.
+"""Worlds by name: they determine the outcomes of orders.
 
 A world is part of a trial, beside its strategy and its search. A *simulated* world carries out
-orders itself. In an *observed* world somebody else does, such as a robot, and says what is there.
+orders itself. In an *observed* world another system, such as a robot, carries them out and
+reports the blocks on the board.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class ImpossibleOrder(InvalidInput):
 
 
 class World(Protocol):
-    """What becomes of orders in a trial; its fields are its settings.
+    """Determines the outcomes of orders in a trial; its fields are its settings.
 
     Attributes:
         simulates: whether :meth:`carry_out` can be called.
@@ -43,11 +44,11 @@ class World(Protocol):
 
     @property
     def obeys(self) -> bool:
-        """Whether every possible order is carried out to the letter."""
+        """Whether every possible order is carried out exactly."""
         ...
 
     def holds(self, blocks: Blocks) -> bool:
-        """Whether blocks stay up where they stand; if not, the trial ends as collapsed."""
+        """Whether a tower of these blocks is stable; if not, the trial ends as collapsed."""
         ...
 
     def carry_out(
@@ -71,7 +72,7 @@ class World(Protocol):
     def complaint(
         self, task: Task, blocks: Blocks, built: Mask, seen: Observation, seed: int, sequence: int
     ) -> str:
-        """Why an observation cannot be of this world; '' if it can.
+        """Why an observation cannot have been made in this world; '' if it can.
 
         Args:
             task: board and library.
@@ -90,9 +91,9 @@ EDGES = ('stands', 'falls')
 
 @dataclass(frozen=True)
 class Simulated(Configured):
-    """Orders are carried out; blocks may slip, be lost, or, if they are loose, topple.
+    """A simulation carries out the orders; blocks may slip or be lost; loose blocks may fall.
 
-    With the default settings every possible order is carried out to the letter and blocks are
+    With the default settings every possible order is carried out exactly and blocks are
     glued where they land (paper, section "Task"). With probability ``loss`` an order leaves the
     board as it is; else with probability ``slip`` the block lands one column left or right of the
     order, each with half of that, and as ordered where it cannot land there. ``loose`` blocks are
@@ -102,19 +103,25 @@ class Simulated(Configured):
     name: ClassVar[str] = 'simulated'
     simulates: ClassVar[bool] = True
     slip: float = setting(
-        0.0, 'Chance that a block lands one column off.', least=0, most=1, unit='probability'
+        0.0,
+        'Probability that a block lands one column left or right of its order.',
+        least=0,
+        most=1,
+        unit='probability',
     )
     loss: float = setting(
-        0.0, 'Chance that an order places nothing.', least=0, most=1, unit='probability'
+        0.0, 'Probability that an order places no block.', least=0, most=1, unit='probability'
     )
-    blocks: str = setting('glued', 'Whether blocks stay where they land.', choices=BLOCKS)
+    blocks: str = setting(
+        'glued', 'Whether blocks stay where they land (glued) or can fall (loose).', choices=BLOCKS
+    )
     edge: str = setting(
-        'stands', 'What a tower of loose blocks does that is just at its limit.', choices=EDGES
+        'stands', 'What a tower of loose blocks at the limit of stability does.', choices=EDGES
     )
 
     @property
     def obeys(self) -> bool:
-        """Whether every possible order is carried out to the letter."""
+        """Whether every possible order is carried out exactly."""
         return not self.slip and not self.loss and self.blocks == 'glued'
 
     def holds(self, blocks: Blocks) -> bool:
@@ -139,14 +146,14 @@ class Simulated(Configured):
             expected = self.carry_out(task, built, seen.ordered, seed, sequence)
         except ImpossibleOrder as error:
             return str(error)
-        return '' if seen == expected else 'the outcome is not what this world draws'
+        return '' if seen == expected else 'the outcome differs from the one that this world draws'
 
 
 @dataclass(frozen=True)
 class Observed(Configured):
-    """Somebody else carries out orders and observes: a robot, a physics engine, a person's hands.
+    """Another system (a robot, a physics engine, a person) carries out orders and observes.
 
-    Whatever is observed is the truth, as long as it can stand on the board.
+    Every observation counts, as long as its blocks can stand on the board.
     """
 
     name: ClassVar[str] = 'observed'
@@ -158,7 +165,7 @@ class Observed(Configured):
         return False
 
     def holds(self, blocks: Blocks) -> bool:
-        """See :class:`World`. What is observed stands."""
+        """See :class:`World`. Observed blocks are stable."""
         return True
 
     def carry_out(
@@ -169,12 +176,12 @@ class Observed(Configured):
         Raises:
             ImpossibleOrder: always.
         """
-        raise ImpossibleOrder('world observed carries out no orders itself')
+        raise ImpossibleOrder('world observed does not carry out orders itself')
 
     def complaint(
         self, task: Task, blocks: Blocks, built: Mask, seen: Observation, seed: int, sequence: int
     ) -> str:
-        """See :class:`World`. The blocks that stand afterwards must be able to stand there."""
+        """See :class:`World`. The blocks must be able to stand where they are observed."""
         return wrong_change(blocks, seen) or impossible(task.board, blocks_after(blocks, seen))
 
 

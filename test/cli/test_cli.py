@@ -508,9 +508,9 @@ def records(tmp_path: Path) -> Path:
 
 def test_true_records_hold(run: Run, records: Path) -> None:
     expected = f'{records}: {len(TOWERS)} records read\n'
-    assert run('verify', records) == (0, f'{expected}all hold\n', '')
-    assert run('verify', records, '--rerun') == (0, f'{expected}all hold\n', '')
-    assert run('verify', records, records) == (0, f'{expected}{expected}all hold\n', '')
+    assert run('verify', records) == (0, f'{expected}all consistent\n', '')
+    assert run('verify', records, '--rerun') == (0, f'{expected}all consistent\n', '')
+    assert run('verify', records, records) == (0, f'{expected}{expected}all consistent\n', '')
 
 
 def test_contradicting_record_is_named(run: Run, records: Path) -> None:
@@ -521,8 +521,8 @@ def test_contradicting_record_is_named(run: Run, records: Path) -> None:
     done = run('verify', records)
     assert (done.code, done.err) == (1, '')
     assert f'{records}, record {len(TOWERS) + 1} ' in done.out
-    assert ': observation 1: the outcome is not' in done.out
-    assert done.out.endswith('1 do not hold\n')
+    assert ': observation 1: the outcome differs' in done.out
+    assert done.out.endswith('1 inconsistent\n')
 
 
 def test_only_a_rerun_finds_another_seed(run: Run, tmp_path: Path) -> None:
@@ -533,7 +533,7 @@ def test_only_a_rerun_finds_another_seed(run: Run, tmp_path: Path) -> None:
     assert run('verify', path).code == 0
     done = run('verify', path, '--rerun')
     assert done.code == 1
-    assert 'run again, placements is not the same' in done.out
+    assert 'a new run gives another value of placements' in done.out
 
 
 def test_unreadable_record_is_refused_with_its_line(run: Run, records: Path) -> None:
@@ -673,4 +673,4 @@ def test_records_of_solve_hold(tmp_path: Path, towers: str) -> None:
     path = tmp_path / 'records.jsonl'
     path.write_text(done.stdout)
     assert len(read_records(path)) == 3
-    assert subprocess_run('verify', path, '--rerun').stdout.endswith('all hold\n')
+    assert subprocess_run('verify', path, '--rerun').stdout.endswith('all consistent\n')

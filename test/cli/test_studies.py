@@ -61,7 +61,7 @@ def test_sweep_with_a_failed_trial_exits_with_1(folder: Path) -> None:
     )
     assert done.returncode == 1
     assert '1 failed' in done.stdout
-    why = 'exact: the search would have outgrown its memory'
+    why = 'exact: the search would have exceeded its memory'
     assert done.stderr == f'failed, 1 trials: {why}\n'
 
 
@@ -69,7 +69,7 @@ def test_sweep_with_a_failed_trial_exits_with_1(folder: Path) -> None:
     ('words', 'error'),
     [
         (['sweep', 'none.yaml', '--out', 'x'], 'none.yaml: cannot be read: No such file'),
-        (['sweep', 'bad.yaml', '--out', 'x'], "bad.yaml, line 4, key 'sedes': is not a key here"),
+        (['sweep', 'bad.yaml', '--out', 'x'], "bad.yaml, line 4, key 'sedes': unknown key"),
         (['sweep', 'sweep.yaml', '--out', 'towers.txt'], '--out towers.txt: File exists'),
         (['exact-policy', 'towers.txt/a', '--search', 'random', '--depth', '2'], 'has no setting'),
         (

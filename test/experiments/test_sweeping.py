@@ -149,12 +149,12 @@ def test_trial_that_ends_at_a_limit_of_memory_has_failed(
     monkeypatch.setattr(exact, 'MAX_STATES', 3)
     summary = run_sweep(sweep(1, (Exact(), BreadthFirst(1))), tmp_path)
     assert 0 < summary.failed < summary.trials
-    assert list(summary.failures) == ['exact: the search would have outgrown its memory']
+    assert list(summary.failures) == ['exact: the search would have exceeded its memory']
 
 
 def test_folder_of_another_sweep_is_refused(tmp_path: Path) -> None:
     run_sweep(sweep(1), tmp_path)
-    with pytest.raises(ConfigurationError, match='holds another sweep'):
+    with pytest.raises(ConfigurationError, match='contains another sweep'):
         run_sweep(sweep(2), tmp_path)
 
 
@@ -177,5 +177,5 @@ def test_manifest_says_what_ran(tmp_path: Path) -> None:
 
 
 def test_missing_table_is_named(tmp_path: Path) -> None:
-    with pytest.raises(ConfigurationError, match=r'trials.parquet: is not there'):
+    with pytest.raises(ConfigurationError, match=r'trials.parquet: does not exist'):
         read_table(tmp_path, 'trials')

@@ -53,7 +53,7 @@ def _refusal(tmp_path: Path, text: str) -> str:
 def test_tag_that_does_not_fit_its_value_is_refused(tmp_path: Path, tag: str) -> None:
     message = _refusal(tmp_path, f'{HEAD}budget: {tag}\n')
     assert message.startswith(", line 3, key 'budget': ")
-    assert message.endswith('is no value that can be read')
+    assert message.endswith('is not a value that can be read')
 
 
 def test_aliases_of_aliases_are_counted(tmp_path: Path) -> None:
@@ -148,4 +148,4 @@ def test_bag_with_messages_that_say_nothing_is_read_but_for_them(tmp_path: Path)
     (found,) = trials_of(bag, refused.append)
     assert found.record == trial
     assert len(refused) == len(spoilt)
-    assert all('its bytes are none' in sentence for sentence in refused)
+    assert all('its bytes are invalid' in sentence for sentence in refused)

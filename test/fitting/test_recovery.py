@@ -142,5 +142,5 @@ def test_true_model_wins() -> None:
 
 
 def test_horizon_without_a_planner_is_refused() -> None:
-    with pytest.raises(ConfigurationError, match='no planner with horizon 2 is plugged in'):
+    with pytest.raises(ConfigurationError, match='no option maker for horizon 2 is registered'):
         Makers().maker(parse_model('rows-2'))

@@ -75,10 +75,10 @@ def test_own_file_is_read_trial_by_trial(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ('text', 'said'),
     [
-        (f'{HEAD}\n1,1,99,2,1,0,0', "line 2: there is no tower '99'"),
+        (f'{HEAD}\n1,1,99,2,1,0,0', "line 2: unknown tower '99'"),
         (f'{HEAD}\n1,1,4,2,1,0,0\n1,1,4,2,1,0,up', 'line 3: expected whole numbers of cells'),
-        (f'{HEAD}\n1,1,4,2,1,0', "line 2: has no column 'row'"),
-        ('participant,tower\n1,4', "line 2: has no column 'trial'"),
+        (f'{HEAD}\n1,1,4,2,1,0', "line 2: missing column 'row'"),
+        ('participant,tower\n1,4', "line 2: missing column 'trial'"),
     ],
 )
 def test_bad_row_is_named(tmp_path: Path, text: str, said: str) -> None:

@@ -230,10 +230,10 @@ def test_parameters_out_of_their_range_are_refused(graph: Graph, tmp_path: Path)
 
 def test_bag_of_another_recorder_is_refused(graph: Graph, tmp_path: Path) -> None:
     node = add_recorder(graph, tmp_path / 'bag')
-    with pytest.raises(BagError, match='is being recorded by another process'):
+    with pytest.raises(BagError, match='another process is recording it'):
         add_recorder(graph, tmp_path / 'bag')
     node.finish()
-    with pytest.raises(BagError, match='holds a finished bag'):
+    with pytest.raises(BagError, match='contains a finished bag'):
         add_recorder(graph, tmp_path / 'bag')
 
 
@@ -278,7 +278,7 @@ def test_killed_recorder_loses_what_was_not_flushed_and_goes_on(
         graph.spin_until(lambda: flushed(bag) == len(said) + len(latched))
         code, err = stop(process, signal.SIGTERM)
     assert code == 0
-    assert f'bag_0.mcap: was cut off; kept {half} messages' in err
+    assert f'bag_0.mcap: was truncated; kept {half} messages' in err
     again = [one for one in said[:half] if latched.get(one.topic) is one]
     assert recorded(bag) == expected(graph, [*said[:half], *again, *said[half:]])
     assert [list(one.contradictions()) for one in trials_of(bag)] == [[], []]
@@ -292,7 +292,7 @@ def test_killed_recorder_is_repaired_without_a_graph(
         peer.wait_for_listeners()
         peer.say(said)
         graph.spin_until(lambda: flushed(bag) == len(said))
-        with pytest.raises(BagError, match='is being recorded by another process'):
+        with pytest.raises(BagError, match='another process is recording it'):
             repair(bag)
         process.kill()
         process.wait()
@@ -307,7 +307,7 @@ def test_finished_bag_ends_the_process_with_one_line(graph: Graph, tmp_path: Pat
     with recorder(graph, bag) as process:
         _, err = process.communicate(timeout=DEADLINE_S)
     assert process.returncode == 2
-    assert err == f'Error: {bag}: holds a finished bag; name a new folder\n'
+    assert err == f'Error: {bag}: contains a finished bag; choose a new folder\n'
 
 
 def test_full_disk_is_said_once_and_survived(
@@ -330,7 +330,7 @@ def test_full_disk_is_said_once_and_survived(
         def has_told() -> bool:
             nonlocal told
             told += process.stderr.read() or ''  # type: ignore[union-attr]
-            return 'nothing more can be written' in told
+            return 'cannot be written' in told
 
         graph.spin_until(has_told)
         before = flushed(bag)
@@ -339,7 +339,7 @@ def test_full_disk_is_said_once_and_survived(
         os.set_blocking(process.stderr.fileno(), True)  # type: ignore[union-attr]
         code, err = stop(process, signal.SIGTERM)
     assert code == 0
-    assert (told + err).count('nothing more can be written: File too large') == 1
+    assert (told + err).count('cannot be written: File too large') == 1
     assert 'Traceback' not in told + err
     assert 'cannot be finished: File too large' in err
     assert [done.messages for done in repair(bag)] == [before]

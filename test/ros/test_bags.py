@@ -219,13 +219,13 @@ def test_bag_without_messages(tmp_path: Path, cli: Callable[..., Any]) -> None:
 
 
 def test_finished_bag_is_refused(bag: Path) -> None:
-    with pytest.raises(BagError, match='holds a finished bag'):
+    with pytest.raises(BagError, match='contains a finished bag'):
         open_bag(bag)
 
 
 def test_other_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / 'thesis.tex').touch()
-    with pytest.raises(BagError, match='holds something that is not a bag'):
+    with pytest.raises(BagError, match='contains something that is not a bag'):
         open_bag(tmp_path)
     with pytest.raises(BagError, match='cannot be written: File exists'):
         open_bag(tmp_path / 'thesis.tex')
@@ -235,11 +235,11 @@ def test_bag_that_is_being_recorded_is_left_alone(tmp_path: Path, said: list[Sai
     writer = open_bag(tmp_path / 'bag')
     add_all(writer, said[:5], flush_after=2)
     for touch in (open_bag, repair):
-        with pytest.raises(BagError, match='is being recorded by another process'):
+        with pytest.raises(BagError, match='another process is recording it'):
             touch(tmp_path / 'bag')
-    with pytest.raises(BagError, match='is being recorded by another process'):
+    with pytest.raises(BagError, match='another process is recording it'):
         repair(tmp_path / 'bag' / 'bag_0.mcap')
-    with pytest.raises(BagError, match='was cut off'):
+    with pytest.raises(BagError, match='is truncated'):
         list(trials_of(tmp_path / 'bag'))
     writer.close()
     assert len(contents(tmp_path / 'bag')) == 5
@@ -457,7 +457,7 @@ def test_files_of_others_are_not_touched(tmp_path: Path, cut_file: Path) -> None
     with pytest.raises(BagError, match='only files that blocks_planning wrote can be repaired'):
         repair(tmp_path)
     (tmp_path / 'bag_0.mcap').write_bytes(b'#' * 100)
-    with pytest.raises(BagError, match='is no MCAP file'):
+    with pytest.raises(BagError, match='is not an MCAP file'):
         repair(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ['bag_0.mcap']
 
@@ -468,8 +468,8 @@ def test_bag_cut_off_before_anything_was_written(
     """Nothing can be kept; recording goes on all the same."""
     (tmp_path / 'bag_0.mcap').write_bytes(b'\x89MCAP0')
     code, out, err = cli('verify', tmp_path)
-    assert (code, err) == (2, f'Error: {tmp_path}: holds no bag that can be read\n')
-    assert 'bag_0.mcap: was cut off; kept 0 messages, put the last 6 bytes' in out
+    assert (code, err) == (2, f'Error: {tmp_path}: is not a bag that can be read\n')
+    assert 'bag_0.mcap: was truncated; kept 0 messages, moved the last 6 bytes' in out
     writer = open_bag(tmp_path)
     add_all(writer, said)
     writer.close()
@@ -552,7 +552,7 @@ def test_subgoals_that_were_missed_are_named(tmp_path: Path) -> None:
     _, said = trial_said(spec(CHAIR))
     bag = write_bag(tmp_path / 'bag', [one for one in said if one.topic is not SUBGOAL])
     [sentence] = only_trial(bag).contradictions()
-    assert sentence.startswith("the outcome says 'success', but messages that lead there are")
+    assert sentence.startswith("the outcome has status 'success', but the bag lacks")
 
 
 @pytest.mark.parametrize('after', range(0, 24, 3))
@@ -607,8 +607,8 @@ def test_lie_about_the_outcome_is_found(
     code, out, err = cli('verify', changed_bag(bag, tmp_path / 'bag', lie))
     assert (code, err) == (1, '')
     [sentence] = [line for line in out.splitlines() if "record 2 ('chair')" in line]
-    assert f'the outcome says {name} ' in sentence
-    assert out.splitlines()[-1] == '1 do not hold'
+    assert f'the outcome has {name} ' in sentence
+    assert out.splitlines()[-1] == '1 inconsistent'
 
 
 def test_cancelling_is_no_way_to_hide_success(tmp_path: Path, bag: Path) -> None:
@@ -665,18 +665,18 @@ def test_verify_repairs_and_says_so(
     (bag / 'bag_0.mcap').write_bytes(cut_file.read_bytes() + b'\x06\xff')
     code, _, err = cli('draw', bag, '--out', tmp_path / 'x.gif')
     assert code == 2
-    assert err.endswith(f'was cut off; `blocks-planning verify {bag}` repairs it\n')
+    assert err.endswith(f'is truncated; `blocks-planning verify {bag}` repairs it\n')
     code, out, _ = cli('verify', bag)
     assert code == 0
-    assert 'was cut off; kept' in out
-    assert 'put the last 2 bytes into bag_0.mcap.torn' in out
+    assert 'was truncated; kept' in out
+    assert 'moved the last 2 bytes to bag_0.mcap.torn' in out
     assert cli('draw', bag, '--record', 2, '--out', tmp_path / 'x.gif')[0] == 0
     assert (tmp_path / 'x.gif').read_bytes().startswith(b'GIF89a')
 
 
 def test_verify_takes_files_of_a_bag(bag: Path, tmp_path: Path, cli: Callable[..., Any]) -> None:
     file = Path(shutil.copy(bag / 'bag_0.mcap', tmp_path))
-    assert cli('verify', file, '--rerun') == (0, f'{file}: 5 records read\nall hold\n', '')
+    assert cli('verify', file, '--rerun') == (0, f'{file}: 5 records read\nall consistent\n', '')
     file.write_bytes(file.read_bytes()[:-1])
     code, out, _ = cli('verify', file)
     assert code == 0

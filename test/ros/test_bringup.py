@@ -228,7 +228,7 @@ def test_namespace_and_domain_are_where_it_was_told(graph: Graph, tmp_path: Path
 @pytest.mark.parametrize(
     ('keys', 'said'),
     [
-        ({'colour': 'red'}, "line 1, key 'colour': is not a key here"),
+        ({'colour': 'red'}, "line 1, key 'colour': unknown key"),
         ({'seeds': 0}, "key 'seeds'"),
         ({'strategies': [{'name': 'luck'}]}, "strategy must be one of .*, got 'luck'"),
     ],

@@ -84,7 +84,7 @@ def test_what_is_no_journal_is_set_aside(tmp_path: Path, content: bytes) -> None
     path.write_bytes(content)
     observations, warning = begin(tmp_path)
     assert observations == []
-    assert 'is not a journal; it was set aside as' in warning
+    assert 'is not a journal; it was renamed to' in warning
     (aside,) = tmp_path.glob('*.aside-*')
     assert aside.read_bytes() == content
 
@@ -123,7 +123,7 @@ def test_a_journal_that_can_not_be_right_is_set_aside(tmp_path: Path) -> None:
     content = path.read_bytes()
     journal = Journal(tmp_path)
     journal.begin('a')
-    assert 'it was set aside as' in journal.refuse()
+    assert 'it was renamed to' in journal.refuse()
     journal.append(SEEN[1])
     journal.release()
     (aside,) = tmp_path.glob('*.aside-*')
@@ -159,7 +159,7 @@ def test_a_full_disk_begins_no_journal(tmp_path: Path) -> None:
 
 def test_one_at_a_time_writes_in_a_folder(tmp_path: Path) -> None:
     first = Journal(tmp_path)
-    with pytest.raises(RecordError, match='is being written by another process'):
+    with pytest.raises(RecordError, match='another process is writing it'):
         Journal(tmp_path, wait_s=0)
     first.release()
     Journal(tmp_path, wait_s=0)

@@ -62,7 +62,7 @@ def test_node_starts_over_when_the_board_was_set_back(
     graph.spin_until(lambda: on.node.memory.state is None)
     on.tell(STATES[0], FIRST)
     graph.spin_until(lambda: any(order.sequence == 0 for order in on.peer.only(PlaceBlock)))
-    assert 'the board was set back' in capfd.readouterr().err
+    assert 'the board was reset' in capfd.readouterr().err
 
 
 def test_one_state_that_was_overtaken_changes_nothing(graph: Graph) -> None:

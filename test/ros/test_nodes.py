@@ -675,11 +675,11 @@ def test_docstring_names_topics_and_parameters(name: str, make: Callable[..., An
     assert module.__doc__ is not None
     rows = dict(re.findall(r'^\| (\w+) \| (.*) \|$', module.__doc__, re.MULTILINE))
     topics = GRAPH[name]
-    if rows['listens'] == 'every topic':
+    if rows['subscribes'] == 'every topic':
         assert set(topics.listens) == set(TOPICS)
     else:
-        assert named(rows['listens']) == {topic.name: topic.latched for topic in topics.listens}
-    assert named(rows.get('says', '')) == {
+        assert named(rows['subscribes']) == {topic.name: topic.latched for topic in topics.listens}
+    assert named(rows.get('publishes', '')) == {
         **{topic.name: topic.latched for topic in topics.says},
         **{topic.name: True for topic in topics.views},
     }

@@ -108,7 +108,7 @@ def test_health_says_what_is_wrong_first() -> None:
     health = Health('building', 'a', ['x'], ['y', 'z'], values={'load': 3})
     status = health.status('/some/node')
     assert (status.name, status.level) == ('/some/node', DiagnosticStatus.WARN)
-    assert status.message == 'waits for y, z'
+    assert status.message == 'waiting for y, z'
     assert [(value.key, value.value) for value in status.values] == [
         ('state', 'building'),
         ('trial', 'a'),
@@ -212,8 +212,8 @@ def test_trial_ends_when_a_peer_is_gone_for_too_long(
     (record,) = map(json.loads, record_lines(tmp_path))
     assert record['status'] == 'cancelled'
     said = capfd.readouterr().err
-    assert 'missing: peer; waits 0.2 s' in said
-    assert 'the script ends here: missing: peer for ' in said
+    assert 'missing: peer; waiting up to 0.2 s' in said
+    assert 'the script ends: missing: peer for ' in said
 
 
 def test_goal_without_peers_is_ended_in_time(graph: Graph, tmp_path: Path) -> None:
@@ -301,7 +301,7 @@ def test_journal_that_contradicts_the_task_is_set_aside(
     on.tell(placing(2))
     (failed,) = on.hear(1, PlacementOutcome)
     assert failed.failed
-    assert failed.reason.endswith(f'it was set aside as {aside.name}')
+    assert failed.reason.endswith(f'it was renamed to {aside.name}')
     on.tell(placing(0))
     assert on.hear(2, WorldState)[-1].placements == RECORD.placements[:1]
     on.peer.outlets[OUTCOME].publish(OUTCOME.to_ros(None, ended(SPEC.trial_id, RECORD)))
@@ -384,7 +384,7 @@ def test_name_is_claimed_once_in_a_domain() -> None:
     first = claim_name(7, name)
     assert first is not None
     other = claim_name(8, name, wait_s=0)
-    with pytest.raises(LimitExceeded, match=rf'node {name} runs already in ROS domain 7'):
+    with pytest.raises(LimitExceeded, match=rf'node {name} is already running in ROS domain 7'):
         claim_name(7, name, wait_s=0)
     first.close()
     for claim in (claim_name(7, name, wait_s=0), other):
@@ -403,7 +403,7 @@ def test_second_process_of_a_node_is_refused(graph: Graph) -> None:
             )
             second = subprocess.run(command, capture_output=True, text=True, timeout=60)
             assert second.returncode == 2
-            assert f'node {graph.namespace}/subgoal_selector runs already' in second.stderr
+            assert f'node {graph.namespace}/subgoal_selector is already running' in second.stderr
             assert len(second.stderr.splitlines()) == 1
             assert first.poll() is None
         finally:
@@ -440,4 +440,4 @@ def test_node_that_was_stopped_is_there_again(graph: Graph, tmp_path: Path) -> N
         finally:
             process.terminate()
         assert process.stderr is not None
-        assert re.search(r'was stopped for \d+\.\d s, and starts again', process.stderr.read())
+        assert re.search(r'was stopped for \d+\.\d s, and restarts', process.stderr.read())

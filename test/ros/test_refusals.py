@@ -90,7 +90,7 @@ REFUSED: list[tuple[str, Callable[[Any], None], str, str]] = [
         'state',
         set_field('observations[1].gone', FREE_FALL),
         'observations[1].gone',
-        'did not stand',
+        'was not on the board',
     ),
     ('state', set_field('observations[1].ordered_block.width', 0), 'ordered_block.width', '0'),
     ('state', set_field('observations[1].landed[0].row', 99), 'observations[1].landed[0]', '99'),

@@ -100,7 +100,7 @@ def test_a_queue_over_its_limit_is_refused(monkeypatch: pytest.MonkeyPatch) -> N
     board = Board(9, 9)
     problem = Problem(Task(board, board.full, (Block(1, 2), Block(2, 1))), 0, board.full)
     search = AStar(5_000, 'largest', 'path')
-    with pytest.raises(LimitExceeded, match=r'outgrows .* nodes; allow fewer iterations'):
+    with pytest.raises(LimitExceeded, match=r'exceeds .* nodes; allow fewer iterations'):
         search.run(problem, 1, 0, CancelToken())
     assert solve(problem, search, 1, 0).status is SolveStatus.LIMIT_EXCEEDED
 
@@ -196,8 +196,8 @@ def test_a_tree_search_goes_where_more_gets_filled() -> None:
 @pytest.mark.parametrize(
     ('name', 'settings', 'limit', 'message'),
     [
-        ('beam', {'width': 5_000}, 'MAX_BEAM_NODES', 'the beam of the search outgrows .* width'),
-        ('mcts', {'iterations': 5_000}, 'MAX_TREE_NODES', 'the tree of the search outgrows'),
+        ('beam', {'width': 5_000}, 'MAX_BEAM_NODES', 'the beam of the search exceeds .* width'),
+        ('mcts', {'iterations': 5_000}, 'MAX_TREE_NODES', 'the tree of the search exceeds'),
     ],
 )
 def test_memory_grows_without_a_trace_up_to_a_limit(

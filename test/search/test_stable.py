@@ -125,9 +125,9 @@ def test_cancelled_in_the_middle() -> None:
 def test_bad_input() -> None:
     board = Board(2, 2)
     problem = Problem(Task(board, board.full), board.ground, board.full)
-    with pytest.raises(ConfigurationError, match=r"bfs or random, got 'astar'"):
+    with pytest.raises(ConfigurationError, match=r"bfs or random for loose blocks, got 'astar'"):
         solve_stable(problem, AStar(), 0, blocks=(Placed(2, 1, 0, 0),))
-    with pytest.raises(InvalidInput, match=r'blocks \[\] must fill exactly what is built'):
+    with pytest.raises(InvalidInput, match=r'blocks \[\] must fill exactly the built cells'):
         solve_stable(problem, BreadthFirst(), 0)
     with pytest.raises(ConfigurationError, match='budget must be'):
         solve_stable(problem, BreadthFirst(), 0, -1, blocks=(Placed(2, 1, 0, 0),))

@@ -58,7 +58,7 @@ def test_state_goes_on_from_the_one_before() -> None:
     )
     Consistency(TRIAL).check(other)
     fits = after(STATES[1])
-    with pytest.raises(Contradiction, match='observations: do not go on'):
+    with pytest.raises(Contradiction, match='observations: do not continue'):
         fits.check(other)
     fits.check(STATES[2])
 

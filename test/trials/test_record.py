@@ -194,7 +194,7 @@ def _name(path: object) -> str:
 def test_missing_key_is_named(tmp_path: Path, path: Keys, key: str) -> None:
     data = deepcopy(SAMPLE)
     del at(data, path)[key]
-    assert f"has no key '{key}'" in refused(tmp_path, json.dumps(data))
+    assert f"missing key '{key}'" in refused(tmp_path, json.dumps(data))
 
 
 @pytest.mark.parametrize('path', [*PARTS, ('search_settings',), ('strategy_settings',)], ids=_name)
@@ -377,20 +377,22 @@ def test_number_that_is_none_of_ours_is_refused(
         pytest.param(
             (*CANDIDATE, 'status'), 'success', 'candidates[1]: status', id='status of a trial'
         ),
-        pytest.param((*CANDIDATE, 'regions'), [1, 17], 'regions must be indices', id='region 17'),
+        pytest.param(
+            (*CANDIDATE, 'regions'), [1, 17], 'regions must contain indices', id='region 17'
+        ),
         pytest.param(
             (*CANDIDATE, 'regions'), [[1]], 'candidates[1]: regions must', id='nested regions'
         ),
         pytest.param((*CANDIDATE, 'cells'), -1, 'candidates[1]: cells must', id='negative cells'),
         pytest.param((*CANDIDATE, 'planning_cost'), 1 << 63, 'planning_cost must', id='huge cost'),
         pytest.param((*CANDIDATE, 'value'), 3, 'candidates[1]: value must', id='whole value'),
-        pytest.param((*REGION, 'label'), {}, 'one kind with its numbers', id='no label'),
+        pytest.param((*REGION, 'label'), {}, 'one key, the kind', id='no label'),
         pytest.param(
             (*REGION, 'label'), {'rows': [1.5]}, 'whole numbers', id='label of fractions'
         ),
-        pytest.param((*REGION, 'label'), {'rows': [1] * 17}, 'up to 16', id='endless label'),
+        pytest.param((*REGION, 'label'), {'rows': [1] * 17}, 'at most 16', id='endless label'),
         pytest.param(
-            (*SUBGOAL, 'region'), 99, 'region must be indices', id='region that is not listed'
+            (*SUBGOAL, 'region'), 99, 'region must contain indices', id='region that is not listed'
         ),
         pytest.param((*SUBGOAL, 'placements', 0), {}, 'placements[0]', id='plan of an object'),
     ],

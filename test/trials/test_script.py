@@ -124,9 +124,9 @@ def test_scripts_that_ship_are_good(name: str) -> None:
 
 REFUSED: list[tuple[str, str, str, str]] = [
     # What is replaced, by what; then the line with the key, and what is said about it.
-    ('seeds: 1', 'seeds: 1\nseed: 4', "line 3, key 'seed'", 'is not a key here'),
-    ('seeds: 1', 'seeds: 1\nseeds: 1', "line 3, key 'seeds'", 'is there twice'),
-    ('seeds: 1\n', '', 'line 1', "lacks the key 'seeds'"),
+    ('seeds: 1', 'seeds: 1\nseed: 4', "line 3, key 'seed'", 'unknown key'),
+    ('seeds: 1', 'seeds: 1\nseeds: 1', "line 3, key 'seeds'", 'appears twice'),
+    ('seeds: 1\n', '', 'line 1', "missing key 'seeds'"),
     ('seeds: 1', 'seeds: 0', "line 2, key 'seeds'", 'seeds must be a whole number .*, got 0'),
     ('seeds: 1', 'seeds: many', "line 2, key 'seeds'", "got 'many'"),
     ('seeds: 1', 'seeds: 1.0', "line 2, key 'seeds'", r'got 1\.0'),
@@ -141,22 +141,22 @@ REFUSED: list[tuple[str, str, str, str]] = [
     ('seeds: 1', 'seeds: 1\nlibrary: 1y2', "line 3, key 'library'", "got '1y2'"),
     ('seeds: 1', 'seeds: 1\nlibrary: 1x2,1x2', "line 3, key 'library'", '1x2 is listed twice'),
     ('seeds: 1', 'seeds: 1\nlibrary: 1x17', "line 3, key 'library'", '1x17'),
-    ('seeds: 1', 'seeds: 1\nlibrary: 3', "line 3, key 'library'", 'expected a text, got 3'),
+    ('seeds: 1', 'seeds: 1\nlibrary: 3', "line 3, key 'library'", 'expected text, got 3'),
     ('[cogsci2021/5]', '[]', "line 1, key 'stimuli'", 'at least one item'),
     ('[cogsci2021/5]', 'cogsci2021/5', "line 1, key 'stimuli'", 'expected a list'),
     ('[cogsci2021/5]', '[cogsci2021/99]', "line 1, key 'stimuli'", 'cogsci2021/99'),
     ('[cogsci2021/5]', '[nowhere.txt]', "line 1, key 'stimuli'", 'nowhere.txt'),
-    ('[cogsci2021/5]', '[5]', "line 1, key 'stimuli'", 'expected a text, got 5'),
+    ('[cogsci2021/5]', '[5]', "line 1, key 'stimuli'", 'expected text, got 5'),
     ('[cogsci2021/5]', '[cogsci2021/5, cogsci2021/5]', 'line 1', 'a trial twice'),
     ('name: bfs', 'name: luck', "line 4, key 'name'", "search must be one of .*, got 'luck'"),
-    ('name: bfs, ', '', 'line 4', "lacks the key 'name'"),
+    ('name: bfs, ', '', 'line 4', "missing key 'name'"),
     ('- {name: bfs, depth: 2}', '- bfs', 'line 4', "expected keys with values, got 'bfs'"),
     ('depth: 2', 'depth: 65', "line 4, key 'depth'", 'depth must be .*, got 65'),
     ('depth: 2', 'depth: [1, deep]', 'line 4', "depth must be .*, got 'deep'"),
     ('depth: 2', 'depth: [2, 2]', 'line 1', 'a trial twice'),
     ('depth: 2', 'depth: []', "line 4, key 'depth'", 'at least one item'),
     ('depth: 2', 'width: 2', "line 4, key 'width'", "has no setting 'width'; it has depth"),
-    ('depth: 2', 'depth: {from: 1, to: 2}', "line 4, key 'depth'", "lacks the key 'count'"),
+    ('depth: 2', 'depth: {from: 1, to: 2}', "line 4, key 'depth'", "missing key 'count'"),
     ('lambda: 0.002', 'lambda: -1', "line 6, key 'lambda'", 'lambda must be .*, got -1'),
     ('lambda: 0.002', 'lambda: .nan', "line 6, key 'lambda'", 'got nan'),
     ('lambda: 0.002', 'lambda: 2e-3', "line 6, key 'lambda'", "got '2e-3'"),
@@ -195,9 +195,9 @@ def test_mistake_is_named_where_it_stands(
         ('seeds: !!python/object:os.system 1\n', 'line 1'),
         ('a: &x [*x]\n', 'nested too deeply'),
         ('? [1, 2]\n: 3\n', ''),
-        ('seeds: 2001-99-99\n', "line 1, key 'seeds': '2001-99-99' is no value"),
+        ('seeds: 2001-99-99\n', "line 1, key 'seeds': '2001-99-99' is not a value"),
         ('a: ' + '[' * 3000 + ']' * 3000, 'nested too deeply'),
-        ('<<: {seeds: 1}\n', "key '<<': is not a key here"),
+        ('<<: {seeds: 1}\n', "key '<<': unknown key"),
         ('a: 1\n---\nb: 1\n', 'is not YAML'),
         ('seeds: ' + '9' * 5000 + '\n', "line 1, key 'seeds'"),
     ],
@@ -348,7 +348,7 @@ def test_full_disk_leaves_the_records_as_they_were(tmp_path: Path) -> None:
 def test_one_at_a_time_writes_records(tmp_path: Path) -> None:
     path = tmp_path / 'trials.jsonl'
     file = RecordFile(path)
-    with pytest.raises(RecordError, match='is being written by another process'):
+    with pytest.raises(RecordError, match='another process is writing it'):
         RecordFile(path, wait_s=0)
     file.close()
     RecordFile(path, wait_s=0).close()

@@ -406,19 +406,19 @@ def test_lie_is_found(lie: str) -> None:
 @pytest.mark.parametrize(
     ('lie', 'sentence'),
     [
-        ('row wrong', 'observation 1: the outcome is not'),
+        ('row wrong', 'observation 1: the outcome differs'),
         ('gone, though not there', 'observation 1: block '),
-        ('found on the board', 'observation 0 is not the board'),
+        ('found on the board', 'observation 0 differs from the board'),
         ('gave_up as success', "status 'success', but"),
-        ('built', 'decision 1: the state of observation 4 is not 0x1'),
-        ('value', 'decision 0: candidate 1: has value'),
-        ('cells', 'decision 0: candidate 1: adds 4 cells, not 5'),
+        ('built', 'decision 1: built is 0x1, which is not the state'),
+        ('value', 'decision 0: candidate 1: expected value'),
+        ('cells', 'decision 0: candidate 1: expected cells 4, got 5'),
         (
             'chosen is not the best',
             'decision 0: candidate 1 is chosen, but the strategy chooses 2',
         ),
-        ('cost considered', 'decision 0: subgoal planning cost'),
-        ('plan not followed', 'decision 0: subgoal 0: observation 1 is of an order'),
+        ('cost considered', 'decision 0: expected subgoal_planning_cost'),
+        ('plan not followed', 'decision 0: subgoal 0: observation 1 has an order'),
     ],
 )
 def test_sentence_says_what_contradicts(lie: str, sentence: str) -> None:
@@ -465,7 +465,7 @@ def test_rerun_finds_what_is_consistent_but_not_true(lie: Lie, keys: set[str]) -
     lied = record_from_json(remade(data), 'x')
     assert list(contradictions(lied)) == []
     said = set(differs_from_rerun(lied))
-    assert {f'run again, {key} is not the same' for key in keys} <= said
+    assert {f'a new run gives another value of {key}' for key in keys} <= said
 
 
 def test_cancelled_record_is_not_run_again() -> None:

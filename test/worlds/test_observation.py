@@ -81,4 +81,4 @@ def test_what_cannot_stand_is_named(blocks: tuple[Placed, ...], reason: str) -> 
 def test_what_did_not_stand_cannot_go() -> None:
     assert wrong_change((POST,), Observation(gone=(POST,))) == ''
     found = wrong_change((POST,), Observation(gone=(POST, OTHER)))
-    assert found == 'block 1x2 in column 3 and row 0 is gone, but it did not stand'
+    assert found == 'block 1x2 in column 3 and row 0 is gone, but it was not on the board'

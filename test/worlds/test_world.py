@@ -111,7 +111,7 @@ def test_only_the_drawn_outcome_is_believed() -> None:
             found = world.complaint(TASK, (), 0, seen, 7, sequence)
             assert (found == '') == (seen == drawn)
         gone = drawn._replace(gone=(LANDED,))
-        assert 'not what this world draws' in world.complaint(
+        assert 'differs from the one that this world draws' in world.complaint(
             TASK, (LANDED,), 0, gone, 7, sequence
         )
     assert 'without an order' in world.complaint(TASK, (), 0, Observation(None, (LANDED,)), 7, 1)
@@ -126,7 +126,7 @@ def test_only_the_drawn_outcome_is_believed() -> None:
         (Observation(MIDDLE, (LANDED,)), 'overlaps'),
         (Observation(None, (Placed(1, 2, 0, 1),)), 'rests on nothing'),
         (Observation(None, (Placed(1, 2, 5, 0),)), 'does not lie inside'),
-        (Observation(None, (), (Placed(1, 2, 3, 0),)), 'did not stand'),
+        (Observation(None, (), (Placed(1, 2, 3, 0),)), 'was not on the board'),
         (Observation(None, (Placed(4, 2, 0, 2),), (LANDED,)), 'rests on nothing'),
     ],
 )
@@ -139,7 +139,7 @@ def test_observed_is_what_can_stand(seen: Observation, reason: str) -> None:
 def test_observed_carries_out_nothing() -> None:
     assert not Observed.simulates
     assert Observed().holds((Placed(4, 2, 0, 2),))
-    with pytest.raises(ImpossibleOrder, match='carries out no orders'):
+    with pytest.raises(ImpossibleOrder, match='does not carry out orders'):
         Observed().carry_out(TASK, 0, MIDDLE, 0, 1)
 
 

@@ -1,1 +1,1 @@
-"""What people do beside what planners do, under the same measures: tables, figures, a section."""
+"""Behaviour of people and planners under the same measures: tables, figures, and a section."""

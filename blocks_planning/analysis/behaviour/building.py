@@ -17,13 +17,13 @@ SEED = 20211001
 PEOPLE = 'people'
 
 LABELS = {
-    'upwards': 'at or above the one before',
+    'upwards': 'at or above the previous one',
     'lowest_row': 'on the lowest unfinished row',
     'rightwards': 'to the right, of steps on a level',
     'inside': 'wholly inside the silhouette',
     'perfect': 'perfect builds',
 }
-"""What each measure of :data:`.orders.MEASURES` is a share of, in words."""
+"""Descriptions of the measures of :data:`.orders.MEASURES`, all shares."""
 
 
 def compare_building(
@@ -34,7 +34,7 @@ def compare_building(
     """Every measure for every group of builders.
 
     Args:
-        groups: builds by the name of who built them: 'people', or a planner.
+        groups: builds by the name of the builders: 'people', or a planner.
         families: names of the region families to describe orders with.
         seed: of the bootstrap and of the orders drawn by chance.
 

@@ -1,4 +1,4 @@
-"""Which towers are hard, for people and for planners: rank correlation, intervals over people."""
+"""Difficulty of towers for people and planners: rank correlation with intervals over people."""
 
 from __future__ import annotations
 
@@ -24,14 +24,13 @@ def compare_difficulty(
 ) -> dict[str, Any]:
     """Spearman's rho of the share of perfect builds per tower, people with each planner.
 
-    Intervals are over people: the towers are the ones there are, and a planner's shares are taken
-    as known.
+    Intervals are over people: the towers are fixed, and a planner's shares are treated as exact.
 
     Returns:
         ``towers``: for each the share of perfect builds of people and of every planner, people's
         easiest first; ``rho``: an estimate by planner, nan if the planner's shares do not vary;
-        ``among_people``: rho of one random half of the people with the other, the most that can
-        be expected.
+        ``among_people``: rho of one random half of the people with the other, an upper
+        bound for the planners.
     """
     rng = np.random.default_rng(seed)
     hits, builds, towers = tables_of(people)

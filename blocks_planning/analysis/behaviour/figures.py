@@ -1,4 +1,4 @@
-"""The figures of what people do beside the planners."""
+"""Figures that compare people and planners."""
 
 from __future__ import annotations
 

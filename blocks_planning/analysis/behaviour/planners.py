@@ -1,4 +1,4 @@
-"""What planners built, in the form in which people's builds are kept."""
+"""The builds of planners, in the same form as those of people."""
 
 from __future__ import annotations
 

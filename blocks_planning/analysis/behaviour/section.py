@@ -50,7 +50,7 @@ def compare_behaviour(sweep: Path, preset: str = 'published') -> dict[str, Any]:
 
 
 def behaviour_figures(found: dict[str, Any]) -> dict[str, Figure]:
-    """The figures of the section, by the name under which the template asks for them."""
+    """The figures of the section, by their names in the template."""
     return {
         'behaviour-building': building_figure(found['building']),
         'behaviour-parts': marking_figure(found['parts']),
@@ -59,7 +59,7 @@ def behaviour_figures(found: dict[str, Any]) -> dict[str, Figure]:
 
 
 def section_content(found: dict[str, Any]) -> dict[str, Any]:
-    """What the template shows: the numbers, the labels, and the names of builders."""
+    """The content of the template: numbers, labels, and names of builders."""
     return {
         **found,
         'labels': LABELS,

@@ -1,4 +1,4 @@
-"""Shares with intervals over builders: whole persons are drawn, with all of their builds."""
+"""Shares with bootstrap intervals over builders, each with all of their builds."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ def estimate_share(
 def estimate_gain(
     own: Tally, by_chance: Tally, rng: np.random.Generator, iterations: int = ITERATIONS
 ) -> Estimate:
-    """How much of what chance leaves open is reached: (own - chance) / (1 - chance).
+    """The share beyond chance: (own - chance) / (1 - chance).
 
-    1 is a share of 1, 0 is a share as by chance. Builders are drawn in pairs with themselves.
+    1 is a share of 1, 0 is the share by chance. Draws of builders are paired.
 
     Raises:
         ValueError: if the tallies are not of the same builders.

@@ -1,5 +1,5 @@
-"""Readers of silhouettes in forms that other programs write.
+"""Readers of silhouettes from files of other programs.
 
 ``documents`` turns a file into plain values, ``blocklists`` and ``grids`` turn values into cells,
-``cells`` turns cells into a board and a mask, and ``towers`` does all of it for a file.
+``cells`` turns cells into a board and a mask, and ``towers`` combines them for a file.
 """

@@ -23,15 +23,15 @@ def cells_of_blocks(value: dict[str, Any], y: str, place: str) -> Cells:
     """The cells that the blocks of a list fill.
 
     Args:
-        value: with the key 'blocks'; other keys of it and of its blocks, such as colours, are
-            left alone.
+        value: with the key 'blocks'; other keys of the list and of its blocks, such as colours,
+            are ignored.
         y: 'up' if y is the lowest row of a block, counted upwards; 'down' if it is its top row,
             counted downwards.
         place: where it comes from, for messages.
 
     Raises:
         StimulusError: naming place, key and value, for a block without one of its four keys, a
-            value that is no whole number in its range, or two blocks in one cell.
+            value that is not a whole number in its range, or two blocks in one cell.
     """
     blocks = value['blocks']
     if not isinstance(blocks, list) or not 1 <= len(blocks) <= MAX_BLOCKS:
@@ -58,7 +58,7 @@ def cells_of_blocks(value: dict[str, Any], y: str, place: str) -> Cells:
 def _number(block: dict[str, Any], key: str, where: str) -> int:
     """A coordinate or a size of a block."""
     if key not in block:
-        raise StimulusError(f'{where}: lacks the key {key!r}')
+        raise StimulusError(f'{where}: missing key {key!r}')
     value = block[key]
     low, high = (1, MAX_SIDE) if key in _SIZES else (-MAX_COORDINATE, MAX_COORDINATE)
     whole = isinstance(value, (int, float)) and not isinstance(value, bool) and value % 1 == 0

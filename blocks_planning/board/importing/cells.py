@@ -1,4 +1,4 @@
-"""Cells of a plane, before they are put on a board."""
+"""Cells of a plane, and their conversion to a board."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def on_board(
     Args:
         cells: at least one.
         place: where they come from, for messages.
-        extent: width and height of the board, whose lower left cell is (0, 0); the smallest that
-            holds all cells, wherever they are, if left out.
+        extent: width and height of the board, whose lower left cell is (0, 0); by default the
+            smallest that contains all cells.
 
     Raises:
         StimulusError: if there is no cell, the board has a side over 16, or a cell is off it.

@@ -23,7 +23,7 @@ def parse_json(text: str, origin: str) -> Any:
         entries: dict[str, Any] = {}
         for key, value in items:
             if key in entries:
-                raise StimulusError(f'{origin}: key {shown(key)} is there twice')
+                raise StimulusError(f'{origin}: key {shown(key)} appears twice')
             entries[key] = value
         return entries
 
@@ -42,7 +42,7 @@ def parse_json(text: str, origin: str) -> Any:
 
 
 def parse_tables(text: str, origin: str) -> list[tuple[int, list[list[str]]]]:
-    """The tables of a CSV text, which are kept apart by blank lines.
+    """The tables of a CSV text, separated by blank lines.
 
     The separator is the first of comma, semicolon and tab that the first line has; without any,
     every character of a line is a value.
@@ -51,7 +51,7 @@ def parse_tables(text: str, origin: str) -> list[tuple[int, list[list[str]]]]:
         For each table the number of its first line, from 1, and its rows of values.
 
     Raises:
-        StimulusError: naming ``origin`` and line, if a line can't be taken apart, or all are blank.
+        StimulusError: naming ``origin`` and line, if a line can't be split, or all are blank.
     """
     lines = text.splitlines()
     first = next((line for line in lines if line.strip()), '')

@@ -1,4 +1,4 @@
-"""Grids of values: which cells are filled, and which way up they lie."""
+"""Grids of values: their filled cells, and their orientation."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from blocks_planning.errors import StimulusError, shown
 LISTS = ('rows', 'columns')
 UPWARDS = ('up', 'down')
 MAX_GRID_SIDE = 1024
-"""Longest side of a grid before its empty margins are taken away [cells]."""
+"""Longest side of a grid before its empty margins are removed [cells]."""
 
 _FILLED_WORDS = frozenset({'1', '#', 'x', 'true', 't', 'yes'})
 _EMPTY_WORDS = frozenset({'0', '.', '', 'false', 'f', 'no', '-', '_'})
@@ -19,7 +19,7 @@ _EMPTY_WORDS = frozenset({'0', '.', '', 'false', 'f', 'no', '-', '_'})
 
 @dataclass(frozen=True)
 class Layout:
-    """How a grid lies.
+    """The orientation of a grid.
 
     Attributes:
         lists: what the inner lists are: 'rows' (``grid[y][x]``) or 'columns' (``grid[x][y]``).
@@ -37,7 +37,7 @@ class Layout:
 
 
 BOOLEAN_MAP = Layout('columns', 'up', inverted=True)
-"""Maps of free space: ``map[x][y]`` is true where nothing is, with y upwards."""
+"""Maps of free space: ``map[x][y]`` is true if the cell is empty, with y upwards."""
 
 
 def is_grid(value: Any) -> bool:
@@ -79,12 +79,12 @@ def cells_of_grid(grid: Any, layout: Layout, place: Place) -> tuple[Cells, tuple
     Args:
         grid: lists of equal length, or texts, of booleans, whole numbers (0 is empty) or signs
             such as '#' and '.'.
-        layout: how it lies.
+        layout: its orientation.
         place: where it comes from, for messages.
 
     Raises:
-        StimulusError: naming the place of the value, and the value, for lines of different length, a value
-            that is neither filled nor empty, or a side over ``MAX_GRID_SIDE``.
+        StimulusError: naming the place of the value, and the value, for lines of different length,
+            a value that is neither filled nor empty, or a side over ``MAX_GRID_SIDE``.
     """
     length = len(grid[0])
     if not 1 <= length <= MAX_GRID_SIDE or len(grid) > MAX_GRID_SIDE:

@@ -1,8 +1,8 @@
-"""Silhouettes from a file in any form that is known, with their names.
+"""Silhouettes from a file in any known form, with their names.
 
 A JSON file is a block list (:mod:`.blocklists`), a grid (:mod:`.grids`), a list of them, or an
-object that has them by name. A grid of booleans only is taken for a map of free space. A CSV file
-has one or more grids, kept apart by blank lines. Text pictures (:mod:`..pictures`) are read too.
+object that has them by name. A grid of booleans is read as a map of free space. A CSV file
+has one or more grids, separated by blank lines. Text pictures (:mod:`..pictures`) are read too.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ _MAX_LEVELS = 4
 
 @dataclass(frozen=True)
 class Reading:
-    """How files are read; what is None is as usual for the form.
+    """How files are read; None is the default of the form.
 
     Attributes:
         lists: what the inner lists of a grid are, 'rows' or 'columns'.
         y: whether y counts 'up' from the ground or 'down' from the top.
         inverted: whether true, 1 and '#' stand for an empty cell.
-        trim: whether empty margins are taken away.
+        trim: whether empty margins are removed.
     """
 
     lists: str | None = None
@@ -50,7 +50,7 @@ class Reading:
     trim: bool = True
 
     def layout(self, usual: Layout) -> Layout:
-        """How a grid lies that usually lies otherwise."""
+        """The layout of a grid, given the default of its form."""
         given = {
             key: value
             for key in ('lists', 'y', 'inverted')
@@ -63,10 +63,10 @@ class Imported(NamedTuple):
     """A silhouette from a file.
 
     Attributes:
-        name: that stands in the file, as far as a name may (:mod:`..names`), or made of its own.
+        name: from the file, adapted to the rules of :mod:`..names`, or from the name of the file.
         board: its size.
         silhouette: its target cells.
-        form: what it was read as, for people.
+        form: the form in which it was read, for display.
     """
 
     name: str
@@ -80,7 +80,7 @@ def import_file(path: Path, reading: Reading | None = None) -> list[Imported]:
 
     Raises:
         StimulusError: naming file, key or line, and value, if the file can't be read, has an
-            ending that is not known, or has no silhouettes in it.
+            unknown suffix, or contains no silhouettes.
     """
     return import_text(read_text(path), path, reading or Reading())
 
@@ -107,7 +107,7 @@ def import_text(text: str, path: Path, reading: Reading) -> list[Imported]:
 def _from_json(
     value: Any, name: str, place: str, reading: Reading, level: int
 ) -> Iterator[Imported]:
-    """The silhouettes of a value and of what is in it."""
+    """The silhouettes of a value and of the values in it."""
     if is_block_list(value):
         given = value.get('name')
         yield _of_blocks(value, given if isinstance(given, str) else name, place, reading)
@@ -127,7 +127,7 @@ def _from_json(
 
 
 def _step(key: str | int) -> str:
-    """How a place goes on with a key of an object, or with a number from 1 of a list."""
+    """The suffix of a place for a key of an object, or for a number from 1 of a list."""
     if isinstance(key, int):
         return f'[{key - 1}]'
     return f'.{key}' if key.isidentifier() else f'[{shown(key)}]'
@@ -165,7 +165,7 @@ def _named(name: str) -> str:
 
 
 def with_different_names(towers: list[Imported]) -> list[Imported]:
-    """The towers, with a number behind every name that another one has already."""
+    """The towers, with a number after every repeated name."""
     taken: set[str] = set()
     named = []
     for tower in towers:

@@ -1,1 +1,1 @@
-"""The compiled half of the board. Arguments are trusted: callers have checked them."""
+"""Compiled functions of the board. Arguments are not checked here: callers have checked them."""

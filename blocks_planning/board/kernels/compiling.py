@@ -1,4 +1,4 @@
-"""How every kernel of the package is compiled."""
+"""Compilation of all kernels of the package."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ _PACKAGE = Path(__file__).resolve().parents[2]
 
 
 def _sources() -> list[Path]:
-    """The files whose text decides what the kernels do."""
+    """The source files of all kernels."""
     return [*sorted(_PACKAGE.glob('*/kernels/*.py')), _PACKAGE / 'search' / 'randomness.py']
 
 
 def _cache_directory() -> str:
-    """A folder of its own for every state of the sources.
+    """A cache folder that is specific to the state of the sources.
 
-    numba looks at the file of a kernel only, and would go on using a kernel whose callees, in
-    other files, have changed. The folder is below NUMBA_CACHE_DIR if that is set, else beside the
-    package, else below the user's cache folder.
+    numba checks only the file of a kernel, and would keep using a kernel whose callees in other
+    files have changed. The folder is below NUMBA_CACHE_DIR if that is set, otherwise beside the
+    package, or below the user's cache folder.
     """
     digest = hashlib.sha256(b''.join(path.read_bytes() for path in _sources())).hexdigest()[:12]
     base = _PACKAGE / '__pycache__'
@@ -38,9 +38,8 @@ def _cache_directory() -> str:
 _CACHE_DIRECTORY = _cache_directory()
 
 
-# Without the runtime that counts references: every array of every tuple that a kernel is handed
-# would be counted up and down for each use, which takes longer than the search itself. So a
-# kernel makes no arrays; its caller keeps those it hands over alive.
+# Without reference counts: counting every array of every tuple for each use would take longer than
+# the search itself. So a kernel creates no arrays, and its caller keeps the arguments alive.
 _OPTIONS = {'nogil': True, 'error_model': 'numpy', '_nrt': False}
 
 
@@ -55,7 +54,7 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 
 def inlined(function: Callable[..., Any]) -> Any:
-    """A part of kernels that is compiled into each caller: for what runs once per state.
+    """Compile a function into each calling kernel: for code that runs once per state.
 
     A call would pass every array of its arguments as seven numbers.
     """

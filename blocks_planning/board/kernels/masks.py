@@ -1,9 +1,9 @@
 """The masks that every kernel works on.
 
-A kernel mask is one ``uint64`` on boards of up to 64 cells and a tuple of four on larger ones.
-``& | ~ << >>``, :func:`count`, :func:`lowest`, :func:`without_lowest`,
-:func:`is_empty`, :func:`digest`, :func:`load`, :func:`store` and :func:`add_bit` mean the same for
-both, so a kernel is written once and compiled for each. Shift distances are ``uint64`` from 1 to 63.
+A kernel mask is one ``uint64`` on boards of up to 64 cells and a tuple of four on larger ones. ``&
+| ~ << >>``, :func:`count`, :func:`lowest`, :func:`without_lowest`, :func:`is_empty`,
+:func:`digest`, :func:`load`, :func:`store` and :func:`add_bit` mean the same for both, so a kernel
+is written once and compiled for each. Shift distances are ``uint64`` from 1 to 63.
 """
 
 from __future__ import annotations
@@ -238,7 +238,7 @@ def _digest(mask):
 
 
 def pack(masks: list[Mask], cells: int) -> np.ndarray:
-    """A table of masks of a board with so many cells: uint64 (n,), or (n, 4) over 64 cells."""
+    """A table of masks of a board with ``cells`` cells: uint64 (n,), or (n, 4) above 64 cells."""
     words = words_of(masks)
     return np.ascontiguousarray(words[:, 0]) if cells <= WORD_BITS else words
 

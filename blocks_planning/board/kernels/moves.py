@@ -1,11 +1,10 @@
 """Compiled twins of the rules: which placements are legal.
 
-What a search has to know of a built state is its *shadow*: the filled cells and all below them.
-With ``free`` the other cells, a block of width 1 lands on the lowest free cell of a column; one
-of width 2 on the lowest row that is free in both columns, that is on ``free & (free >> height)``,
-and so on for wider ones. All landing places of a width come from a few shifts, and which of them
-are legal from one mask per block, made in advance. A placement adds the block's own shadow, also
-made in advance.
+A search only needs the *shadow* of a state: the filled cells and all cells below them. With
+``free`` the other cells, a block of width 1 lands on the lowest free cell of a column; one of width
+2 on the lowest row that is free in both columns, that is on ``free & (free >> height)``, and so on
+for wider ones. A few shifts give all landing places of a width, and one precomputed mask per block
+selects the legal ones. A placement adds the precomputed shadow of the block.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ from blocks_planning.board.task import Task
 
 
 class Tables(NamedTuple):
-    """All that a kernel needs of (task, region). ``mask`` is uint64 (n,) or (n, 4).
+    """Tables of (task, region) for kernels. ``mask`` is uint64 (n,) or (n, 4).
 
     A *move* is a placement with the row where it lands, as one number:
     ``block index * cells + bit of its lower left cell``.
@@ -41,7 +40,7 @@ class Tables(NamedTuple):
 
 
 class Footprints(NamedTuple):
-    """What the tables of all regions have in common, and the cells of each block at each bit."""
+    """The common part of the tables of all regions, and the cells of each block at each bit."""
 
     cells: tuple[tuple[Mask, ...], ...]  # by block and bit; none off the board
     mask: np.ndarray  # mask (blocks * cells,): the same at each move
@@ -155,7 +154,7 @@ def legal_moves(tables, shadow, moves, first):
 
 @inlined
 def has_move(tables, shadow):
-    """Whether anything legal is left."""
+    """Whether a legal placement is left."""
     above = load(tables.board, 0) & ~shadow
     free, step = above, 0
     for block in range(tables.area.size):

@@ -5,12 +5,12 @@
     bag/metadata.yaml     what is in the files; written when the recording ends, or by a repair
         bag_0.mcap        messages in chunks, each on disk when :meth:`.writer.BagWriter.flush`
         bag_1.mcap        returns; an index at the end
-        bag_1.mcap.torn   what a repair put aside: the end of a file that was cut off
+        bag_1.mcap.torn   the end of a truncated file, moved here by a repair
 
-A bag is finished when metadata.yaml lists every file and every file has its index. Everything
-else was cut off, by a killed process or a power cut, and :mod:`.repair` makes it whole: all that
-was flushed is kept, and what follows is put aside, never deleted. Whoever writes in a bag holds
-a lock on its directory; the lock ends with the process.
+A bag is finished when metadata.yaml lists every file and every file has its index. Any other bag
+was truncated, by a killed process or a power cut, and :mod:`.repair` repairs it: all flushed
+messages are kept, and the rest is moved to another file, never deleted. A process that writes to a
+bag holds a lock on its directory; the lock ends with the process.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Reading trials back from a bag, with no graph running and no middleware.
+"""Reading trials from a bag, without a running graph and without middleware.
 
 The messages of each trial go through the same conversions as on the graph and through the scribe,
-so that the record of a trial is made from the bag alone. Where one file of a bag ends and the next
-begins messages may be missing: the recorder may have been killed, and started again later.
+so the record of a trial is rebuilt from the bag alone. Messages may be missing between the end of
+one file of a bag and the begin of the next: the recorder may have been killed and restarted later.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _FROM_ROS: dict[str, Callable[[Board, Any], Message]] = {
 }
 _KINDS = (_TRIAL, _OUTCOME, *_FROM_ROS)
 _MOST_OPEN = 8
-"""Number of later trials after which no message of a trial is expected. (Topics are not ordered.)"""
+"""Number of later trials after which no message of a trial is expected (topics are unordered)."""
 _VERSION1 = (
     'blocks',
     'subgoals',
@@ -73,7 +73,7 @@ class _Heard:
         return RecordedTrial(trial_id, record, outcome, self.spans_files)
 
     def take(self, kind: str, message: Any) -> None:
-        """Take a message of this trial, of any version."""
+        """Handle a message of this trial, of any version."""
         assert self.memory.trial is not None
         is_old = version1.is_of_version1(kind, message)
         if is_old:
@@ -81,7 +81,7 @@ class _Heard:
         if kind == _OUTCOME:
             outcome = _outcome_from_ros(self, message, is_old)
             if self.outcome not in (None, outcome):
-                raise BagError('the trial ended already, in another way')
+                raise BagError('the trial had already ended with another outcome')
             self.outcome = outcome
         else:
             converted = _FROM_ROS[kind](self.board, message)
@@ -90,7 +90,7 @@ class _Heard:
 
 
 class _Listener:
-    """Takes the messages of a bag one by one, and sorts them by trial."""
+    """Handles the messages of a bag one by one, and sorts them by trial."""
 
     def __init__(self, refuse: Callable[[str], None]) -> None:
         self.trials: dict[str, _Heard] = {}
@@ -108,7 +108,7 @@ class _Listener:
         """
         kind, message, file = entry
         if message is None:
-            self._refuse(f'what was sent as a {kind} was refused: its bytes are none')
+            self._refuse(f'a message on a topic of {kind} was refused: its bytes are invalid')
             return
         trial_id = message.trial_id
         kinds = self._kinds_in.setdefault(file, set())
@@ -132,7 +132,7 @@ class _Listener:
         except InvalidInput as error:
             self._refuse(f'a {kind} of trial {shown(trial_id)} was refused: {error}')
         except AttributeError as error:
-            raise BagError(f'was recorded with another kind of {kind}: {error}') from None
+            raise BagError(f'was recorded with another definition of {kind}: {error}') from None
 
     def _announce(self, message: Any, file: int) -> None:
         if version1.is_of_version1(_TRIAL, message):
@@ -142,14 +142,14 @@ class _Listener:
         if trial_id not in self.trials:
             self.trials[trial_id] = _Heard(scribe.Memory(started), file)
         elif self.trials[trial_id].memory.trial != started:
-            raise BagError('it was announced already, as another one')
+            raise BagError('it was already announced with another specification')
         if file and len(self._kinds_in[file]) < len(_KINDS):
             self.trials[trial_id].spans_files = True
         for held in self._inbox.take(trial_id):
             self.hear(held)
 
     def oldest(self) -> RecordedTrial:
-        """The trial that was announced first, of which no further message comes."""
+        """Remove the trial that was announced first; no further message of it is expected."""
         trial_id = next(iter(self.trials))
         self.finished.add(trial_id)
         return self.trials.pop(trial_id).trial()

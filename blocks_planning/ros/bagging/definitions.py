@@ -1,4 +1,4 @@
-"""Definitions of messages, as they are installed: the text with its comments, and its hash."""
+"""Installed definitions of messages: text with comments, and hash."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _installed(ros_type: str, suffix: str) -> str:
 
 
 def _parts(ros_type: str, text: str) -> list[str]:
-    """The messages that the fields of a message are made of."""
+    """The types of the fields of a message."""
     package = ros_type.split('/', maxsplit=1)[0]
     names = [found['type'] for found in _FIELD.finditer(text)]
     return [

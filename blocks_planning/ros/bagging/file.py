@@ -26,7 +26,7 @@ _MESSAGE_OVERHEAD = 31  # [bytes]
 
 
 class _Outbox:
-    """The end of a file that is not on disk yet; bytes that a full disk refuses stay in memory."""
+    """The part of a file that is not on disk yet; it stays in memory while the disk is full."""
 
     def __init__(self, path: Path) -> None:
         self._disk = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
@@ -44,10 +44,10 @@ class _Outbox:
         return self._written + len(self._waiting)
 
     def flush(self) -> None:
-        """For the writer: it need not know what is on disk."""
+        """Required by the writer; does nothing."""
 
     def send(self) -> None:
-        """See everything on disk, or leave there what was."""
+        """Write everything to disk, or leave the file unchanged."""
         sent = 0
         try:
             with memoryview(self._waiting) as waiting:
@@ -73,14 +73,14 @@ class BagFile:
     """
 
     def __init__(self, path: Path, name: str | None = None) -> None:
-        """Make the file, which must not exist.
+        """Create the file, which must not exist.
 
         Args:
             path: where to write it.
-            name: what it will be called, if not as in ``path``.
+            name: its final name, if that differs from ``path``.
 
         Raises:
-            OSError: if the disk does not take it.
+            OSError: if it cannot be written.
         """
         self.name = name or path.name
         self.counts: Counter[str] = Counter()
@@ -134,7 +134,7 @@ class BagFile:
         """Write all messages to disk.
 
         Raises:
-            OSError: if the disk does not take them; they wait for the next flush.
+            OSError: if they cannot be written; they wait for the next flush.
         """
         self._writer.flush()
         self._in_chunk = 0
@@ -142,17 +142,17 @@ class BagFile:
             self._outbox.send()
 
     def summary(self) -> FileSummary:
-        """What is in the file, waiting or not."""
+        """The content of the file, including waiting messages."""
         topics = [topic for _, topic in self._topics.values()]
         if not self.counts:
             return FileSummary(self.name, topics, {})
         return FileSummary(self.name, topics, dict(self.counts), self._start_ns, self._end_ns)
 
     def close(self) -> None:
-        """Add the index. If that fails the file stays as after the last flush.
+        """Add the index. If that fails, the file stays as it was after the last flush.
 
         Raises:
-            OSError: if the disk does not take it.
+            OSError: if it cannot be written.
         """
         try:
             self.flush()
@@ -165,7 +165,7 @@ class BagFile:
 
 
 def read_summary(path: Path) -> FileSummary | None:
-    """What is in a file; None if it does not end with its index.
+    """The content of a file; None if it does not end with its index.
 
     Raises:
         OSError: if it can't be opened.
@@ -184,7 +184,7 @@ def read_summary(path: Path) -> FileSummary | None:
             counts: Counter[str] = Counter()
             for number, count in statistics.channel_message_counts.items():
                 counts[topics[number].name] += count
-        except Exception:  # noqa: BLE001  whatever bytes lead to that are not as written
+        except Exception:  # noqa: BLE001  damaged bytes can lead to any exception
             return None
     if not counts.total():
         return FileSummary(path.name, list(topics.values()), {})

@@ -21,7 +21,7 @@ class Outcome:
         reason: why it could not continue; '' if it ended regularly or a user cancelled it.
         sequence: of the latest observation; -1 if the board was never observed.
         placements: the blocks that stand.
-        summary: counts, costs and measures by name; those that its version of the message has.
+        summary: counts, costs and measures by name, as far as the version of the message has them.
     """
 
     status: TrialStatus
@@ -41,12 +41,12 @@ class RecordedTrial:
     """A trial of a bag.
 
     Attributes:
-        trial_id: of this run of it.
-        record: made from its states and subgoals. Its status is building if they do not lead to
-            an end.
+        trial_id: id of this run of the trial.
+        record: built from its states and subgoals. Its status is building if they do not lead to an
+            end.
         outcome: what was published at its end; None if that is not in the bag.
-        spans_files: whether it was under way where one file ends and the next begins, or before
-            the recorder of the next one had found all publishers.
+        spans_files: whether it was running when one file ended and the next began, or before the
+            recorder of the next file had found all publishers.
     """
 
     trial_id: str
@@ -56,13 +56,13 @@ class RecordedTrial:
 
     @property
     def is_over(self) -> bool:
-        """Whether the bag has its end."""
+        """Whether the bag contains its end."""
         has_outcome = self.outcome is not None and not self._has_gap
         return has_outcome or self.record.status is not TrialStatus.BUILDING
 
     @property
     def _has_gap(self) -> bool:
-        """Whether messages are missing that led to the outcome, and may be."""
+        """Whether messages that led to the outcome are missing, for a known reason."""
         if self.outcome is None or not self.spans_files:
             return False
         lacks_states = len(self.record.observations) <= self.outcome.sequence
@@ -75,12 +75,12 @@ class RecordedTrial:
         if outcome is not None and self._has_gap:
             found = record.placements
             if record.spec.world.obeys and outcome.placements[: len(found)] != found:
-                yield 'the outcome has other placements than the messages that led there'
+                yield 'the placements of the outcome differ from those of the earlier messages'
             yield from verify.contradictions(begun(record))
             return
         if outcome is not None and record.status is TrialStatus.BUILDING:
             status = outcome.status.value
-            yield f'the outcome says {status!r}, but messages that lead there are not in the bag'
+            yield f'the outcome has status {status!r}, but the bag lacks the messages that lead to it'
             return
         if outcome is not None:
             yield from _differences(record, outcome)
@@ -96,7 +96,7 @@ def _differences(record: TrialRecord, outcome: Outcome) -> Iterator[str]:
     }
     for name, value in published.items():
         if value != found[name]:
-            yield f'the outcome says {name} {_show(value)}, the messages {_show(found[name])}'
+            yield f'the outcome has {name} {_show(value)}, the messages give {_show(found[name])}'
 
 
 def _show(value: object) -> str:
@@ -106,19 +106,19 @@ def _show(value: object) -> str:
 
 
 def begun(record: TrialRecord) -> TrialRecord:
-    """As much of a record as has both observations and decisions, as if cancelled there."""
+    """The part of a record that has both observations and decisions, as if cancelled after it."""
     executed: dict[int, int] = {}
     last = 0
     for span in spans_of(record):
         executed[span.decision] = span.subgoal + 1
         last = span.progress.sequence
-        if span.progress.is_open:  # what was begun after it is not seen yet
+        if span.progress.is_open:  # later subgoals are not observed yet
             break
     return _cut(record, executed, last, '')
 
 
 def cancelled(memory: scribe.Memory, outcome: Outcome) -> TrialRecord:
-    """The record when the trial was cancelled: other nodes may have gone on a little."""
+    """The record at the time of cancelling: other nodes may have continued for a moment."""
     record = memory.record()
     executed: dict[int, int] = {}
     left = outcome.subgoals
@@ -134,7 +134,7 @@ def _cut(record: TrialRecord, executed: Mapping[int, int], last: int, reason: st
     """A record that was cancelled after an observation.
 
     Args:
-        record: the whole.
+        record: the whole record.
         executed: number of subgoals that were begun, by the index of the decisions that are kept.
         last: number of the last observation that is kept.
         reason: why it was cancelled.

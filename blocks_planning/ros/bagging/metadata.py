@@ -1,4 +1,4 @@
-"""What ``metadata.yaml`` says of a bag: version 9, as rosbag2 of ROS 2 Jazzy writes it."""
+"""``metadata.yaml`` of a bag: version 9, as rosbag2 of ROS 2 Jazzy writes it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ STORAGE = 'mcap'
 LIBRARY = f'blocks_planning {__version__}'
 """Name of the writer of a file; also in its header."""
 NEVER_NS = 2**63 - 1
-"""When a file without messages begins."""
+"""The starting time of a file without messages."""
 
 
 class RecordedTopic(NamedTuple):
@@ -28,7 +28,7 @@ class RecordedTopic(NamedTuple):
         ros_type: such as ``blocks_planning_msgs/msg/TrialSpec``.
         definition: text of the message and of all messages in it.
         type_hash: of the definition, ``RIHS01_...``.
-        offered_qos: what publishers offer, a list in YAML.
+        offered_qos: the profiles of its publishers, a list in YAML.
     """
 
     name: str
@@ -39,7 +39,7 @@ class RecordedTopic(NamedTuple):
 
 
 class FileSummary(NamedTuple):
-    """What is in one file of a bag; times are those of receipt, in nanoseconds since 1970."""
+    """The content of one file of a bag; times are those of receipt, in nanoseconds since 1970."""
 
     name: str
     topics: Sequence[RecordedTopic]
@@ -115,10 +115,10 @@ def to_yaml(content: object) -> str:
 
 
 def write_metadata(directory: Path, files: Sequence[FileSummary]) -> None:
-    """Write ``metadata.yaml`` as a whole, or not at all.
+    """Write ``metadata.yaml`` atomically.
 
     Raises:
-        OSError: if the disk does not take it.
+        OSError: if it cannot be written.
     """
     temporary = directory / f'{METADATA}.new'
     with temporary.open('w', encoding='utf-8') as file:
@@ -140,7 +140,7 @@ def listed_files(directory: Path) -> Iterable[str] | None:
 
 
 def sync_directory(directory: Path) -> None:
-    """See the names of a directory on disk."""
+    """Flush the names of a directory to disk."""
     descriptor = os.open(directory, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -1,4 +1,4 @@
-"""The messages of a bag that trials are made of, without any middleware."""
+"""Reads the messages of a bag from which trials are rebuilt, without any middleware."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class BagMessage(NamedTuple):
 
     Attributes:
         kind: name of its type.
-        message: as its own definition in the bag says; None if its bytes are no such message.
-        file: number of the file that it is in.
+        message: decoded with its definition in the bag; None if its bytes are invalid.
+        file: number of its file in the bag.
     """
 
     kind: str
@@ -32,7 +32,7 @@ class BagMessage(NamedTuple):
 
 
 def messages_of(bag: Path, kinds: Container[str]) -> Iterator[BagMessage]:
-    """The messages of some kinds, in the order in which they came.
+    """The messages of some kinds, in the order of recording.
 
     Raises:
         BagError: if the bag can't be read, or is truncated and has to be repaired first.
@@ -42,11 +42,11 @@ def messages_of(bag: Path, kinds: Container[str]) -> Iterator[BagMessage]:
     try:
         finished = is_finished(bag)
         if not finished and bag.is_dir() and not any(bag.glob('*.mcap')):
-            raise BagError(f'{bag}: holds no bag that can be read')
+            raise BagError(f'{bag}: is not a bag that can be read')
     except OSError as error:
         raise BagError(f'{bag}: cannot be read: {error.strerror}') from None
     if not finished:
-        raise BagError(f'{bag}: was cut off; `blocks-planning verify {bag}` repairs it')
+        raise BagError(f'{bag}: is truncated; `blocks-planning verify {bag}` repairs it')
     source = _read(bag, kinds)
     while True:
         try:

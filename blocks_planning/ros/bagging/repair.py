@@ -40,8 +40,8 @@ class Repair(NamedTuple):
     Attributes:
         path: the file.
         messages: number of messages in it now.
-        aside: where the bytes are that could not be read.
-        aside_bytes: how many; if there are none, ``aside`` does not exist.
+        aside: file of the bytes that could not be read.
+        aside_bytes: their number; if it is 0, ``aside`` does not exist.
     """
 
     path: Path
@@ -50,14 +50,14 @@ class Repair(NamedTuple):
     aside_bytes: int
 
     def __str__(self) -> str:
-        said = f'{self.path}: was cut off; kept {self.messages} messages'
+        said = f'{self.path}: was truncated; kept {self.messages} messages'
         if self.aside_bytes:
-            said += f', put the last {self.aside_bytes} bytes into {self.aside.name}'
+            said += f', moved the last {self.aside_bytes} bytes to {self.aside.name}'
         return said
 
 
 def is_finished(bag: Path) -> bool:
-    """Whether nothing is to be repaired."""
+    """Whether no repair is needed."""
     if not bag.is_dir():
         return bag.suffix != '.mcap' or read_summary(bag) is not None
     listed = listed_files(bag)
@@ -68,17 +68,17 @@ def is_finished(bag: Path) -> bool:
 
 
 class FileBegin(NamedTuple):
-    """When the first message of a file came [ns since 1970], and which file of its bag it is."""
+    """Time of the first message of a file [ns since 1970], and number of the file in its bag."""
 
     time_ns: int
     number: int
 
 
 def file_begins(bag: Path) -> list[FileBegin]:
-    """When each MCAP file of a bag begins that has messages, in order.
+    """The beginnings of the MCAP files of a bag that have messages, in order.
 
-    The numbers are those of the names: files without messages, and those that were put aside,
-    count. A single file counts for nothing.
+    The numbers are those of the names, which include files without messages and moved ones. For a
+    single file the list is empty.
     """
     found: list[FileBegin] = []
     for path in _files_of(bag) if bag.is_dir() else []:
@@ -95,7 +95,7 @@ def repair(bag: Path) -> list[Repair]:
     """Repair a bag, if it is truncated: a directory, or a single MCAP file.
 
     Raises:
-        BagError: if it can't be, or is being recorded right now; nothing was lost then.
+        BagError: if it can't be repaired, or is being recorded; it is then unchanged.
     """
     try:
         if is_finished(bag):
@@ -124,19 +124,19 @@ def claim(directory: Path) -> int:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         os.close(descriptor)
-        raise BagError(f'{directory}: is being recorded by another process') from None
+        raise BagError(f'{directory}: another process is recording it') from None
     return descriptor
 
 
 def repair_claimed(directory: Path) -> tuple[list[FileSummary], list[Repair]]:
-    """Repair a bag whose lock the caller holds.
+    """Repair a bag whose lock is held by the caller.
 
     Returns:
-        (what is in its files, what was repaired)
+        (content of its files, repairs)
 
     Raises:
-        BagError: if it can't be.
-        OSError: if the disk does not take it.
+        BagError: if it can't be repaired.
+        OSError: if it cannot be written.
     """
     repairs = [_repair_file(path) for path in _files_of(directory) if read_summary(path) is None]
     summaries = [read_summary(path) for path in _files_of(directory)]
@@ -152,7 +152,7 @@ def _files_of(directory: Path) -> list[Path]:
 
 
 def _repair_file(path: Path) -> Repair | None:
-    """Replace a file by one with all messages that can be read from it."""
+    """Replace a file by a new one with all messages that can be read from it."""
     aside = _free_name(path)
     with path.open('rb') as file:
         size = os.fstat(file.fileno()).st_size
@@ -199,7 +199,7 @@ def _header() -> bytes:
 
 
 def _is_torn_header(begin: bytes, path: Path) -> bool:
-    """Whether a file ends before its first message could have come.
+    """Whether a file ends before its first message.
 
     Raises:
         BagError: if this package did not write the file: another process may be writing it.
@@ -207,7 +207,7 @@ def _is_torn_header(begin: bytes, path: Path) -> bool:
     if len(begin) < len(_header()) and _header().startswith(begin):
         return True
     if not begin.startswith(MCAP0_MAGIC):
-        raise BagError(f'{path}: is no MCAP file')
+        raise BagError(f'{path}: is not an MCAP file')
     try:
         header = Header.read(ReadDataStream(BytesIO(begin[len(MCAP0_MAGIC) + _FRAME.size :])))
         library = header.library
@@ -215,14 +215,14 @@ def _is_torn_header(begin: bytes, path: Path) -> bool:
         library = ''
     if not library.startswith(_OURS):
         raise BagError(
-            f'{path}: has no index: it was cut off, or is being written; '
+            f'{path}: has no index: it is truncated, or is being written; '
             f'only files that {_OURS} wrote can be repaired'
         )
     return False
 
 
 def _copy_messages(file: BinaryIO, size: int, whole: BagFile) -> int:
-    """Copy what can be read; return where that ends."""
+    """Copy all readable messages; return the end of the readable part."""
     schemas: dict[int, Schema] = {}
     channels: dict[int, str] = {}
     end = len(MCAP0_MAGIC)
@@ -242,7 +242,7 @@ def _copy_messages(file: BinaryIO, size: int, whole: BagFile) -> int:
                     channels[record.id] = record.topic
             messages = [record for record in records if isinstance(record, Message)]
             topics = [channels[message.channel_id] for message in messages]
-        except Exception:  # noqa: BLE001  whatever bytes lead to that are not as written
+        except Exception:  # noqa: BLE001  damaged bytes can lead to any exception
             break
         for topic, message in zip(topics, messages, strict=True):
             whole.write(
@@ -255,13 +255,13 @@ def _copy_messages(file: BinaryIO, size: int, whole: BagFile) -> int:
 
 
 def _is_index(body: bytes) -> bool:
-    """Whether a record has the length of an index, and is no chunk with a damaged opcode."""
+    """Whether a record has the length of an index, and is not a chunk with a damaged opcode."""
     _, length = struct.unpack_from('<HI', body.ljust(6))
     return bool(length == len(body) - 6)
 
 
 def _records(file: BinaryIO, size: int) -> Iterator[tuple[int, bytes, int]]:
-    """The records of a file, each with its opcode and where it ends, to the first torn one."""
+    """The records of a file, each with its opcode and its end, up to the first truncated one."""
     place = len(MCAP0_MAGIC)
     while place + _FRAME.size <= size:
         file.seek(place)

@@ -1,7 +1,7 @@
-"""Messages of version 1: bags that were recorded with them are still read.
+"""Messages of version 1, for reading old bags.
 
-A bag carries the definitions of its messages, so that the bytes can be read; here such a message
-gets the shape that it has now. Version 1 had a field for each setting, regions that are the rows
+A bag contains the definitions of its messages, so they can be decoded; this module converts such a
+message to the current version. Version 1 had a field for each setting, regions that are the rows
 below a height or of any other shape, and worlds that carry out every order. Its `sequence` was the
 number of blocks, which is the number of the latest observation in such a world.
 """
@@ -44,7 +44,7 @@ _FIELDS = {
         )
     },
 }
-"""The field of each setting that version 1 knew."""
+"""The field of each setting in version 1."""
 _STATUSES = ('success', 'stuck', 'gave_up', 'cancelled')
 """How a trial could end; their codes now are 1 to 4."""
 _BY_USER = 'the trial was cancelled'
@@ -58,14 +58,14 @@ _NEW_FIELDS = {
 
 
 def is_of_version1(kind: str, message: Any) -> bool:
-    """Whether a message of a bag has the shape of version 1."""
+    """Whether a message of a bag is of version 1."""
     if kind == 'Subgoal':
         return any(hasattr(decision, 'placed') for decision in message.decisions)
     return not hasattr(message, _NEW_FIELDS[kind])
 
 
 def upgraded(kind: str, message: Any, spec: TrialSpec | None) -> Any:
-    """A message of version 1 in the shape that it has now.
+    """A message of version 1, converted to the current version.
 
     Args:
         kind: name of its type.

@@ -22,16 +22,16 @@ class BagWriter:
     """A bag that is being recorded.
 
     Attributes:
-        repairs: what was done to the bag, which had been cut off, before going on with it.
+        repairs: what was done to repair the truncated bag before continuing it.
         counts: number of messages taken, by topic.
-        lost: number of messages that came while too much was waiting already.
+        lost: number of messages that were dropped because too much was waiting.
     """
 
     def __init__(self, path: Path, topics: Iterable[RecordedTopic], split_bytes: int = 0) -> None:
-        """Begin a bag, or go on with one that was cut off.
+        """Begin a bag, or continue a truncated one.
 
         Args:
-            path: its directory: one that does not exist, is empty, or holds a bag cut off.
+            path: its directory: one that does not exist, is empty, or holds a truncated bag.
             topics: all that will be recorded.
             split_bytes: file size at which another file begins [bytes]; 0: never.
 
@@ -60,9 +60,11 @@ class BagWriter:
 
     def _refuse_other_content(self) -> None:
         if any(self._path.iterdir()) and not any(self._path.glob('*.mcap*')):
-            raise BagError(f'{self._path}: holds something that is not a bag; name a new folder')
+            raise BagError(
+                f'{self._path}: contains something that is not a bag; choose a new folder'
+            )
         if any(self._path.glob('*.mcap')) and is_finished(self._path):
-            raise BagError(f'{self._path}: holds a finished bag; name a new folder')
+            raise BagError(f'{self._path}: contains a finished bag; choose a new folder')
 
     def _next_file(self) -> BagFile:
         name = self._path.resolve().name
@@ -88,7 +90,7 @@ class BagWriter:
         """Write all messages to disk, and begin another file if this one is large enough.
 
         Raises:
-            OSError: if the disk does not take them. They wait for the next flush, and the file
+            OSError: if they cannot be written. They wait for the next flush, and the file
                 stays as it was.
         """
         self._file.flush()
@@ -103,10 +105,10 @@ class BagWriter:
         self._closed.append(file.summary())
 
     def close(self) -> None:
-        """Finish the bag. If that fails it counts as cut off, and can be repaired.
+        """Finish the bag. If that fails, the bag counts as truncated, and can be repaired.
 
         Raises:
-            OSError: if the disk does not take it.
+            OSError: if it cannot be written.
         """
         try:
             was_whole = self._is_whole

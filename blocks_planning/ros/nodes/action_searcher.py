@@ -1,4 +1,4 @@
-"""Node ``action_searcher``: how a region is filled, and the placements that fill it.
+"""Node ``action_searcher``: plans how to fill a region, and orders the placements.
 
 Searches run in worker threads, so that the node stays responsive; they stop as soon as their trial
 is over. The kernels of a search are compiled in such a thread too, before it is first run: those of
@@ -6,9 +6,9 @@ the default search when the node starts.
 
 | | |
 |---|---|
-| listens | `trial`, `state`, `subgoal`, `outcome` (latched), `search/request` (stream) |
-| says | `search/result`, `action` (stream), `plan` (latched) |
-| parameters | `remind_period_s`; `frame_id`; `workers`: searches at once |
+| subscribes | `trial`, `state`, `subgoal`, `outcome` (latched), `search/request` (stream) |
+| publishes | `search/result`, `action` (stream), `plan` (latched) |
+| parameters | `remind_period_s`; `frame_id`; `workers`: number of searches that run at once |
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from blocks_planning.trials.messages import (
     TrialStarted,
 )
 
-WORKERS = Parameter('workers', 2, 'Searches that run at once.', (1, 64))
+WORKERS = Parameter('workers', 2, 'Number of searches that run at once.', (1, 64))
 
 
 MOST_AT_ONCE = 32
@@ -79,7 +79,7 @@ class ActionSearcher(PartNode):
         super().take(message)
 
     def perform(self, message: Message) -> None:
-        """Search in a thread; the answer comes back to the thread of the node."""
+        """Search in a thread; the answer returns to the thread of the node."""
         assert isinstance(message, Solve)
         assert self.trial is not None
         self._waiting.append((self.trial, message, self._cancel))
@@ -91,7 +91,7 @@ class ActionSearcher(PartNode):
         return replace(health, state='compiling') if self._kernels.compiling else health
 
     def load(self) -> dict[str, object]:
-        """See :class:`PartNode`; of the searches that were asked for in the trial."""
+        """See :class:`PartNode`; counts of the searches of the trial."""
         running = self._running
         return {
             'searches_running': running,
@@ -131,7 +131,7 @@ class ActionSearcher(PartNode):
             self.call_soon(self._deliver)
 
     def _take_questions(self) -> list[_Question]:
-        """Some questions of the trial of the first; the more, the more wait."""
+        """Questions of the trial of the first one; their number grows with the number that wait."""
         with self._counting:
             most = min(MOST_AT_ONCE, -(-len(self._waiting) // (2 * self.values['workers'])))
             taken: list[_Question] = []

@@ -1,13 +1,13 @@
 """Node ``bag_recorder``: records all messages in a bag.
 
 The bag is a rosbag2 directory of MCAP files, see :mod:`.bagging`. Killing the node, or a power
-cut, loses at most the last ``flush_period_s``; started again, it repairs the bag and goes on.
+cut, loses at most the last ``flush_period_s``; after a restart it repairs the bag and continues.
 When the disk is full it warns once, keeps the messages for a while, and tries again.
 
 | | |
 |---|---|
-| listens | every topic |
-| parameters | `bag_dir`: a folder that does not exist, or holds a bag that was cut off; `flush_period_s`: how often everything is seen on disk; `split_bytes`: begin another file when one is so large, 0: never |
+| subscribes | every topic |
+| parameters | `bag_dir`: a folder that does not exist, or holds a truncated bag; `flush_period_s`: period of writing to disk; `split_bytes`: file size at which another file begins, 0: never |
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from blocks_planning.ros.wire.topics import VIEW_TOPICS, Topic, ViewTopic
 
 BAG_DIR = Parameter('bag_dir', 'bag', 'Folder of the bag: a new one, or of a truncated bag.')
 FLUSH_PERIOD = Parameter(
-    'flush_period_s', 1.0, 'How often everything is seen on disk [s].', (0.05, 60.0)
+    'flush_period_s', 1.0, 'Period of writing all messages to disk [s].', (0.05, 60.0)
 )
 SPLIT_BYTES = Parameter(
     'split_bytes', 0, 'File size at which another file begins [bytes]; 0: never.', (0, 2**40)
@@ -42,13 +42,13 @@ _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
 
 class BagRecorder(GuardedNode):
-    """Hands every message, as it came, to a :class:`BagWriter`."""
+    """Passes every message, unchanged, to a :class:`BagWriter`."""
 
     drain_s = 0.1
-    """For what has arrived when the end comes."""
+    """Time to receive the remaining messages before the end [s]."""
 
     def __init__(self, **options: Any) -> None:
-        """Open the bag, then listen.
+        """Open the bag, then subscribe.
 
         Raises:
             BagError: if the bag can't be written.
@@ -95,23 +95,25 @@ class BagRecorder(GuardedNode):
             self._writer.flush()
         except OSError as error:
             if not self._failure:
-                self._failure = f'{self._path}: nothing more can be written: {error.strerror}'
+                self._failure = f'{self._path}: cannot be written: {error.strerror}'
                 self.get_logger().error(
-                    f'{self._failure}; what was written stays, and it is tried again'
+                    f'{self._failure}; the written part is kept, and writing is tried again'
                 )
             return
         if self._failure:
             lost = self._writer.lost
-            self.get_logger().warning(f'{self._path}: written again; {lost} messages lost')
+            self.get_logger().warning(
+                f'{self._path}: writing works again; {lost} messages were lost'
+            )
         self._failure = ''
 
     def finish(self) -> None:
-        """Finish the bag; nothing may be received any more."""
+        """Finish the bag; no message may be received after that."""
         try:
             self._writer.close()
         except OSError as error:
             self.get_logger().error(
-                f'{self._path}: cannot be finished: {error.strerror}; what was written stays; '
+                f'{self._path}: cannot be finished: {error.strerror}; the written part is kept; '
                 '`blocks-planning verify` repairs it'
             )
 
@@ -130,7 +132,7 @@ def recorded_topic(topic: Topic | ViewTopic, name: str) -> RecordedTopic:
 
 
 def offered_qos(profile: QoSProfile) -> dict[str, Any]:
-    """A profile as rosbag2 writes it; what is not limited is written as forever."""
+    """A profile as rosbag2 writes it; unlimited durations are written as infinite."""
     return {
         'history': profile.history.short_key,
         'depth': profile.depth,

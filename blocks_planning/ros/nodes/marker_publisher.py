@@ -1,14 +1,12 @@
-"""Node ``marker_publisher``: the tower in space, for RViz and Foxglove.
+"""Node ``marker_publisher``: shows the tower in RViz and Foxglove.
 
-Every array begins by deleting everything, so that the latest one alone shows the whole scene; see
-:mod:`blocks_planning.view.solids` for what there is. When scenes follow one another faster than
-they are published, those between are never seen.
+Every array begins with a marker that deletes all others, so the latest array is the whole scene;
+see :mod:`blocks_planning.view.solids` for its contents. When scenes change faster than they are
+published, intermediate ones are skipped.
 
-| | |
-|---|---|
-| listens | `trial`, `state`, `subgoal`, `outcome` (latched) |
-| says | `markers` (latched) |
-| parameters | `remind_period_s`; `frame_id`; `cell_size`: side of a cell in metres; `publish_period_s`: longest time until a change is shown |
+| | | |---|---| | subscribes | `trial`, `state`, `subgoal`, `outcome` (latched) | | publishes |
+`markers` (latched) | | parameters | `remind_period_s`; `frame_id`; `cell_size`: side of a cell in
+metres; `publish_period_s`: longest time until a change is shown |
 """
 
 from __future__ import annotations
@@ -54,7 +52,7 @@ class MarkerPublisher(Watcher):
         self._outlet.publish(markers_to_ros(solids, header, self.values['cell_size']))
 
     def finish(self) -> None:
-        """Before the node is gone: show how the last trial ended."""
+        """Before shutdown: show how the last trial ended."""
         self._show()
         self._outlet.wait_for_all_acked(Duration(seconds=ACKNOWLEDGE_S))
 

@@ -1,9 +1,9 @@
-"""Node ``subgoal_selector``: which region comes next.
+"""Node ``subgoal_selector``: chooses the next region.
 
 | | |
 |---|---|
-| listens | `trial`, `state`, `subgoal/proposal`, `outcome` (latched), `search/result` (stream) |
-| says | `search/request` (stream), `subgoal` (latched) |
+| subscribes | `trial`, `state`, `subgoal/proposal`, `outcome` (latched), `search/result` (stream) |
+| publishes | `search/request` (stream), `subgoal` (latched) |
 | parameters | `remind_period_s`; `frame_id` |
 """
 
@@ -35,7 +35,7 @@ class SubgoalSelector(PartNode):
         super().receive(message)
 
     def load(self) -> dict[str, object]:
-        """See :class:`PartNode`; of the queries that were asked in the trial."""
+        """See :class:`PartNode`; counts of the queries of the trial."""
         waiting = [query for query in self.memory.asked if query not in self.memory.known]
         chosen = self.memory.chosen
         return {

@@ -1,18 +1,18 @@
-"""Node ``trial_orchestrator``: which trial runs, and its record.
+"""Node ``trial_orchestrator``: runs the trials and writes their records.
 
-With a ``script`` it runs the script's trials in order, leaves out those whose records are in
-``trials.jsonl`` already, and ends the process. Without, it waits for goals; one at a time.
+With a ``script`` it runs the trials of the script in order, skips those that have a record in
+``trials.jsonl``, and ends the process. Without a script it waits for goals, one at a time.
 
-A trial that cannot go on ends with status ``cancelled``, and the reason is in its outcome: a node
-is missing for too long, or a disk is full. A script ends with it, with exit code 1; started again
-it goes on with that trial.
+A trial that cannot continue, because a node is missing for too long or a disk is full, ends with
+status ``cancelled`` and the reason in its outcome. The script then ends with exit code 1; after a
+new start it continues with that trial.
 
 | | |
 |---|---|
-| listens | `state`, `subgoal` (latched), `action/outcome` (stream) |
-| says | `trial`, `outcome` (latched) |
+| subscribes | `state`, `subgoal` (latched), `action/outcome` (stream) |
+| publishes | `trial`, `outcome` (latched) |
 | action | `run_trial`: feedback with every state and subgoal; cancelling ends the trial |
-| parameters | `remind_period_s`; `frame_id`; `script`; `participant`: code of the person who scopes; `out_dir`: where `trials.jsonl` is; `wait_for`: nodes that must be present; `peer_timeout_s`: how long it waits for them, before a trial and during it |
+| parameters | `remind_period_s`; `frame_id`; `script`; `participant`: code of the person who plans; `out_dir`: folder of `trials.jsonl`; `wait_for`: nodes that must be present; `peer_timeout_s`: how long to wait for a missing one, before a trial and during it |
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class TrialOrchestrator(PartNode):
     # Trials
 
     def start_trial(self, trial_id: str, spec: TrialSpec) -> None:
-        """Announce a trial, and follow it."""
+        """Announce a trial, and record it."""
         self._began_s, self._trouble = self._now_s(), ''
         self.get_logger().info(
             f'trial {trial_id} begins: {spec.stimulus}, {spec.strategy.name}, '
@@ -138,7 +138,7 @@ class TrialOrchestrator(PartNode):
         ended = self._written(message)
         outcome = OUTCOME.to_ros(None, ended)
         self.publish(OUTCOME, outcome)
-        self._latched.clear()  # no node is to begin the trial again
+        self._latched.clear()  # no node must begin the trial again
         self._ended += 1
         self._failures += ended.status is not TrialStatus.SUCCESS
         self._trouble = ended.reason
@@ -168,7 +168,7 @@ class TrialOrchestrator(PartNode):
 
     def _give_up(self, reason: str) -> None:
         """End the script: the next trial would fail for the same reason."""
-        self.get_logger().error(f'the script ends here: {reason}')
+        self.get_logger().error(f'the script ends: {reason}')
         self.exit_code = 1
         self._stop.set()
 
@@ -187,7 +187,7 @@ class TrialOrchestrator(PartNode):
             self._give_up(overdue)
             return
         if missing:
-            self.get_logger().warning(f'{overdue}; the script begins without')
+            self.get_logger().warning(f'{overdue}; the script begins without them')
         script.begin()
 
     def _look(self) -> None:
@@ -199,12 +199,12 @@ class TrialOrchestrator(PartNode):
         gone = self._note_missing(wanted)
         if gone:
             bound_s = self.values['peer_timeout_s']
-            self.get_logger().warning(f'missing: {", ".join(gone)}; waits {bound_s:g} s')
+            self.get_logger().warning(f'missing: {", ".join(gone)}; waiting up to {bound_s:g} s')
         if self._overdue and self.is_busy:
             self.cancel_trial(self._overdue)
 
     def _note_missing(self, wanted: list[str]) -> list[str]:
-        """Note which nodes are missing; return those that have just gone."""
+        """Note which nodes are missing; return those that were present before."""
         return self._attendance.note(self.peers.missing(wanted), self._now_s())
 
     @property

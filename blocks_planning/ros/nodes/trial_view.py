@@ -6,10 +6,10 @@ against its session, and publishes the valid ones.
 
 | | |
 |---|---|
-| listens | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched) |
-| says | `subgoal/proposal` (latched) |
-| hears too | `/diagnostics` of the nodes in its namespace; `search/result`, unless no trial of its script is a person's: answers are many |
-| parameters | `remind_period_s`; `frame_id`; `host`: to listen at, off this machine a token is asked for; `port`: to listen at, 0: any that is free; `token`: of who looks, '': of the environment, or a new one where one is needed; `script`: whose trials are counted, '': none; `participant`: code of the person of its trials, '': as the script says |
+| subscribes | `trial`, `state`, `subgoal/proposal`, `subgoal`, `outcome` (latched) |
+| publishes | `subgoal/proposal` (latched) |
+| also subscribes | `/diagnostics` of the nodes in its namespace; `search/result`, unless its script has no trial of a person (the answers are many) |
+| parameters | `remind_period_s`; `frame_id`; `host`: address to listen on, other than this machine needs a token; `port`: port to listen on, 0: any free one; `token`: access token, '': that of the environment, or a new one if one is needed; `script`: trial script, to count its trials, '': no count; `participant`: code of the person of its trials, '': as in the script |
 """
 
 from __future__ import annotations
@@ -51,15 +51,15 @@ HOST = Parameter(
 PORT = Parameter('port', 0, 'Port to listen on; 0: any free one.', (0, 65535))
 TOKEN = Parameter('token', '', 'Access token; none: that of the environment, or a new one.')
 SCRIPT = Parameter('script', '', 'Trial script, to count its trials; none: no count.')
-PARTICIPANT = Parameter('participant', '', 'Code of the person; none: as the script says.')
+PARTICIPANT = Parameter('participant', '', 'Code of the person; none: as in the script.')
 PARAMETERS = (HOST, PORT, TOKEN, SCRIPT, PARTICIPANT)
 TOKEN_VARIABLE = 'BLOCKS_PLANNING_VIEW_TOKEN'
-"""Every user of the machine could read a token in the arguments of a process."""
+"""Environment variable of the token: process arguments can be read by every user of the machine."""
 NICENESS = 10
 
 
 class TrialView(PartNode):
-    """A session that is watched, with a server that shows it."""
+    """The session, with a server that shows it."""
 
     MOST_KNOWN = 1 + session.MOST_LATE
 
@@ -67,8 +67,8 @@ class TrialView(PartNode):
         """See :class:`PartNode`.
 
         Raises:
-            ConfigurationError: also if the page can't be served there, or what serves it is not
-                installed.
+            ConfigurationError: also if the page can't be served at the address, or the extra
+                ``page`` is not installed.
         """
         from blocks_planning.view.web.live import Mailbox
         from blocks_planning.view.web.server import PageServer
@@ -188,12 +188,12 @@ def _is_persons(spec: TrialSpec) -> bool:
 def stand_back() -> None:
     """Lower the priority of this process, so that the page does not slow down the trials.
 
-    Where the system schedules by session, the niceness of a process counts inside its session
-    only; a session of its own, as the bring-up gives it, has one too.
+    If the system schedules by session, the niceness of a process matters only within its session;
+    so the niceness of the session, which the bring-up creates for each process, is set too.
     """
     os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
     if os.getsid(0) == os.getpid():
-        with suppress(OSError):  # no such thing here
+        with suppress(OSError):  # not available on this system
             Path('/proc/self/autogroup').write_text(str(NICENESS), encoding='ascii')
 
 

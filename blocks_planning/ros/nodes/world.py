@@ -1,14 +1,13 @@
-"""Node ``world``: the board, and what becomes of each order.
+"""Node ``world``: owns the board and carries out orders.
 
-The driver of real hardware can replace it; nothing else has to change. With a ``journal_dir`` a
+The driver of real hardware can replace this node without other changes. With a ``journal_dir`` a
 world that was killed and restarted continues with the board of the running trial. If an observation
-cannot be written to disk, the order is not executed; the trial ends, and its outcome has the reason.
+cannot be written to disk, the order is not executed; the trial ends, and its outcome has the
+reason.
 
-| | |
-|---|---|
-| listens | `trial`, `outcome` (latched), `action` (stream) |
-| says | `state` (latched), `action/outcome` (stream) |
-| parameters | `remind_period_s`; `frame_id`; `journal_dir`: folder of the journal; `placing_s`: how long placing a block takes |
+| | | |---|---| | subscribes | `trial`, `outcome` (latched), `action` (stream) | | publishes |
+`state` (latched), `action/outcome` (stream) | | parameters | `remind_period_s`; `frame_id`;
+`journal_dir`: folder of the journal; `placing_s`: duration of a placement |
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ from blocks_planning.trials.messages import (
 )
 
 JOURNAL_DIR = Parameter('journal_dir', '', 'Folder of the journal; none: no journal.')
-PLACING = Parameter('placing_s', 0.0, 'How long placing a block takes [s].', (0.0, 3600.0))
+PLACING = Parameter('placing_s', 0.0, 'Duration of a placement [s].', (0.0, 3600.0))
 
 
 class World(PartNode):
@@ -45,7 +44,7 @@ class World(PartNode):
         """See :class:`PartNode`.
 
         Raises:
-            RecordError: if there can be no journal in its folder.
+            RecordError: if the journal cannot be written in its folder.
         """
         super().__init__(WORLD, world, (JOURNAL_DIR, PLACING), **options)
         folder = self.values['journal_dir']

@@ -1,1 +1,1 @@
-"""What every node process needs: start and stop, peers, parameters, diagnostics, bring-up."""
+"""Shared code of all node processes: start and stop, peers, parameters, diagnostics, bring-up."""

@@ -1,4 +1,4 @@
-"""How long the nodes that a trial needs have been missing."""
+"""How long required nodes have been missing."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from collections.abc import Iterable
 
 
 class Attendance:
-    """Since when nodes have been missing."""
+    """The time since when each missing node has been missing."""
 
     def __init__(self) -> None:
-        """No node is missing."""
+        """Start with no node missing."""
         self._since: dict[str, float] = {}
 
     def note(self, missing: Iterable[str], now_s: float) -> list[str]:
-        """Note which nodes are missing at a moment [s]; return those that have just gone."""
+        """Note which nodes are missing at a time [s]; return those that were present before."""
         since = {name: self._since.get(name, now_s) for name in missing}
         gone = [name for name in since if name not in self._since]
         self._since = since

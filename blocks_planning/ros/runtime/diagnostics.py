@@ -1,7 +1,7 @@
 """The health of a node, once a second on ``/diagnostics``, as ROS tools expect it.
 
-One status per node, by its fully qualified name; a value is a text. All nodes say ``state``,
-``trial``, ``peers_present`` and ``peers_missing``; what else there is depends on the node.
+One status per node, by its fully qualified name; values are texts. All nodes have ``state``,
+``trial``, ``peers_present`` and ``peers_missing``; other values depend on the node.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ _DEPTH = 10
 
 @dataclass(frozen=True)
 class Health:
-    """How a node is.
+    """The health of a node.
 
     Attributes:
         state: a word: idle, waiting, building, searching, recording ...
-        trial: id of the trial that runs, '' if none does.
-        missing: peers that are not there.
-        failure: a sentence that says what does not work, '' if all does.
-        values: what else there is to know, by name.
+        trial: id of the running trial; '' if there is none.
+        missing: names of missing peers.
+        failure: a sentence that describes a failure; '' if there is none.
+        values: other values, by name.
     """
 
     state: str
@@ -42,7 +42,7 @@ class Health:
         missing = ', '.join(self.missing)
         level, message = DiagnosticStatus.OK, self.state
         if missing:
-            level, message = DiagnosticStatus.WARN, f'waits for {missing}'
+            level, message = DiagnosticStatus.WARN, f'waiting for {missing}'
         if self.failure:
             level, message = DiagnosticStatus.ERROR, self.failure
         values = {
@@ -62,21 +62,21 @@ class Health:
 
 
 class Diagnostics:
-    """Publishes the health of a node; the node's spinning drives it."""
+    """Publishes the health of a node from a timer of the node."""
 
     def __init__(self, node: Node, look: Callable[[], Health]) -> None:
-        """Advertise.
+        """Create the publisher and its timer.
 
         Args:
-            node: whose health it is.
-            look: says how it is.
+            node: the node.
+            look: returns the current health.
         """
         self._node, self._look = node, look
         self._outlet = node.create_publisher(DiagnosticArray, TOPIC, _DEPTH)
         node.create_timer(PERIOD_S, self.say, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def say(self) -> None:
-        """Publish how the node is now."""
+        """Publish the current health."""
         message = DiagnosticArray(
             status=[self._look().status(self._node.get_fully_qualified_name())]
         )

@@ -1,4 +1,4 @@
-"""A ROS domain of one's own on this machine, and the environment that keeps to it."""
+"""A private ROS domain on this machine, and the environment variables for it."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from blocks_planning.errors import ConfigurationError, LimitExceeded
 from blocks_planning.resources import resource_directories
 
 DOMAINS = range(1, 101)
-_CLAIM_PORT = 6900  # a socket on this port + domain says that the domain is taken
+_CLAIM_PORT = 6900  # a socket on this port + domain marks the domain as taken
 
 
 class Domain:
-    """A claimed domain; it is free again when this object, or the process, is gone."""
+    """A claimed domain; it is free again when this object is released or the process ends."""
 
     def __init__(self, number: int | None = None) -> None:
-        """Claim a domain, or any that is free.
+        """Claim a domain; None: any free one.
 
         Raises:
             ConfigurationError: if the number is not 0 to 100.
@@ -32,8 +32,8 @@ class Domain:
         self.number = self._find_free() if number is None else number
 
     def _find_free(self) -> int:
-        # Not all bring-ups begin with the same one: that would be where those meet that were
-        # told a domain by hand.
+        # Bring-ups begin the search at different domains, so that they rarely collide with a domain
+        # that was set by hand.
         start = os.getpid() % len(DOMAINS)
         for number in (*DOMAINS[start:], *DOMAINS[:start]):
             claim = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -45,19 +45,19 @@ class Domain:
         raise LimitExceeded(f'all ROS domains from 1 to {DOMAINS[-1]} are taken on this machine')
 
     def release(self) -> None:
-        """Let others have the domain."""
+        """Free the domain."""
         if self._claim is not None:
             self._claim.close()
 
     def environment(self, base: Mapping[str, str]) -> dict[str, str]:
-        """The variables of a process that takes part in this domain, on this machine only."""
+        """The environment variables of a process in this domain, on this machine only."""
         return {
             **base,
             'AMENT_PREFIX_PATH': base.get('AMENT_PREFIX_PATH') or sys.prefix,
             'ROS_DOMAIN_ID': str(self.number),
             'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SYSTEM_DEFAULT',
             'FASTRTPS_DEFAULT_PROFILES_FILE': str(loopback_profile()),
-            'RMW_FASTRTPS_USE_QOS_FROM_XML': '1',  # how memory is taken is told in that profile
+            'RMW_FASTRTPS_USE_QOS_FROM_XML': '1',  # that profile sets how memory is allocated
             'RMW_IMPLEMENTATION': 'rmw_fastrtps_cpp',
         }
 
@@ -66,7 +66,7 @@ def loopback_profile() -> Path:
     """The Fast DDS profile that keeps everything on this machine.
 
     Raises:
-        ConfigurationError: if the package was installed without its files.
+        ConfigurationError: if the file was not installed.
     """
     for directory in resource_directories('config'):
         path = directory / 'loopback.xml'

@@ -1,9 +1,9 @@
-"""An executor for a node that hears many messages.
+"""An executor for a node that receives many messages.
 
-The executors of rclpy make the set of things that they wait for anew for every message, twice: that
-takes longer than handling most messages. This one keeps the set, and hands messages of
-subscriptions to their callbacks itself. Everything else (timers, services, actions, events, tasks)
-is left to the executor of rclpy that it is derived from.
+The executors of rclpy rebuild their wait set twice for every message, which takes longer than
+handling most messages. This one keeps the wait set, and passes messages of subscriptions to their
+callbacks itself. Everything else (timers, services, actions, events, tasks) is handled by the base
+class, an executor of rclpy.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from rclpy.subscription import Subscription
 from rclpy.waitable import NumberOfEntities
 
 OTHERS_S = 0.05
-"""Longest time for which everything but messages waits while messages come without a pause."""
+"""Longest delay of everything but messages while messages arrive without a pause [s]."""
 
 
 class MessageExecutor(SingleThreadedExecutor):
     """Spins one node."""
 
     def __init__(self, node: Node) -> None:
-        """Take a node; its entities may still change."""
+        """Add a node; its entities may change later."""
         super().__init__(context=node.context)
         self.add_node(node)
         self._node = node
@@ -34,7 +34,7 @@ class MessageExecutor(SingleThreadedExecutor):
         self._others_at = 0.0
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Handle what is ready, or comes in time [s]: a message of each topic, or one other thing.
+        """Wait up to ``timeout_sec`` [s]; handle a message of each topic, or one other entity.
 
         Raises:
             ExternalShutdownException: if rclpy was shut down.
@@ -78,7 +78,9 @@ class MessageExecutor(SingleThreadedExecutor):
             for waitable in waitables:
                 waitable.add_to_wait_set(wait_set)
             wait_set.wait(-1 if timeout_sec is None else int(timeout_sec * 1e9))
-        except _rclpy.InvalidHandle:  # something was destroyed meanwhile: the base class copes
+        except (
+            _rclpy.InvalidHandle
+        ):  # an entity was destroyed meanwhile: the base class handles that
             return []
         if not self.context.ok():
             raise ExternalShutdownException
@@ -107,7 +109,7 @@ class MessageExecutor(SingleThreadedExecutor):
             )
 
     def _handle(self, subscription: Subscription) -> None:
-        """Hand a message to its callback."""
+        """Pass a message to its callback."""
         with subscription.handle:
             taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
         if taken is None:

@@ -1,7 +1,7 @@
 """The action ``run_trial``: one goal at a time, with feedback, a result and a way to cancel.
 
-Every goal is accepted, so that its client hears why a trial could not be begun: such a goal is
-aborted at once, with the reason in its outcome.
+Every goal is accepted, so that its client receives a reason if the trial cannot start: such a goal
+is aborted at once, with the reason in its outcome.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ ACTION = 'run_trial'
 
 
 class Runner(Protocol):
-    """What runs the trials of goals."""
+    """A node that runs the trials of goals."""
 
     def start_trial(self, trial_id: str, spec: TrialSpec) -> None:
-        """Announce a trial, and follow it."""
+        """Announce a trial, and record it."""
         ...
 
     def cancel_trial(self) -> None:
-        """End the trial that runs, if one does."""
+        """End the running trial, if there is one."""
         ...
 
     def refuse(self, what: str, reason: object) -> None:
-        """Count and report something that cannot be used."""
+        """Count and report an invalid message or goal."""
         ...
 
     def stamped(self, message: Any) -> Any:
@@ -42,7 +42,7 @@ class Runner(Protocol):
 
 
 class GoalServer:
-    """Runs the trial of a goal on a node that is a :class:`Runner`."""
+    """Runs the trials of goals on a node that is a :class:`Runner`."""
 
     def __init__(self, runner: Any, is_open: Callable[[], bool]) -> None:
         """Offer the action.
@@ -69,12 +69,12 @@ class GoalServer:
 
     @property
     def is_busy(self) -> bool:
-        """Whether the trial of a goal runs."""
+        """Whether the trial of a goal is running."""
         return self._done is not None
 
     @property
     def is_heard(self) -> bool:
-        """Whether a client waits for feedback."""
+        """Whether a client receives feedback."""
         return self._goal is not None
 
     def tell(self, feedback: RunTrial.Feedback) -> None:
@@ -82,14 +82,14 @@ class GoalServer:
         self._goal.publish_feedback(feedback)
 
     def end(self, outcome: Any) -> bool:
-        """End the goal that runs with an outcome; return whether there was one."""
+        """End the running goal with an outcome; return whether there was one."""
         if self._done is None:
             return False
         self._done.set_result(outcome)
         return True
 
     def _accept(self, goal: Any) -> None:
-        """Judge a goal, and take it if nothing else runs."""
+        """Check a goal, and start it if no trial is running."""
         judged = self._judge(goal.request.trial)
         self._judged[bytes(goal.goal_id.uuid)] = judged
         if not isinstance(judged, str):

@@ -1,8 +1,8 @@
-"""A node that no message can bring down.
+"""A node that no message can crash.
 
-What comes from the graph is taken as bytes and read here, because a message that can't be read
-would otherwise be lost without being counted; and a request that a service of rclpy itself stumbles
-over would end the node.
+Messages are received as bytes and decoded here, because the middleware would drop an invalid
+message without counting it. Services are guarded too, because a request for which a service of
+rclpy raises an exception would end the node.
 """
 
 from __future__ import annotations
@@ -18,31 +18,31 @@ from blocks_planning.ros.wire.conversions.fields import MessageError, refuse
 from blocks_planning.ros.wire.topics import Topic, ViewTopic
 
 MOST_BYTES = 8 << 20
-"""Four times what the largest board and planner can have to say."""
+"""Size limit of a message [bytes]: four times the largest valid one."""
 WARN_PERIOD_S = 1.0
 _SHOWN = 300
 
 
 def read_message(kind: type[Any], data: bytes) -> Any:
-    """The message of a type that some bytes say, in CDR.
+    """Decode a message of a type from CDR bytes.
 
     Raises:
-        MessageError: if they say none, or are more than ``MOST_BYTES``.
+        MessageError: if they are invalid, or more than ``MOST_BYTES``.
     """
     if len(data) > MOST_BYTES:
         raise refuse('message', f'{len(data)} bytes', f'up to {MOST_BYTES} bytes')
     try:
         return deserialize_message(data, kind)
-    except Exception:  # noqa: BLE001  whatever the middleware thinks of it
-        raise MessageError(f'its {len(data)} bytes are no {kind.__name__}') from None
+    except Exception:  # noqa: BLE001  the middleware raises many kinds of exceptions
+        raise MessageError(f'its {len(data)} bytes are not a {kind.__name__}') from None
 
 
 class GuardedNode(Node):
-    """Counts what it refuses, and warns of it at a limited rate.
+    """Counts refused messages, and warns about them at a limited rate.
 
     Attributes:
-        refused: how many messages, requests and goals.
-        steady: a clock that no jump of another one matters to.
+        refused: number of refused messages, requests and goals.
+        steady: a monotonic clock, independent of the system time.
     """
 
     def __init__(self, name: str, **options: Any) -> None:
@@ -52,7 +52,7 @@ class GuardedNode(Node):
         super().__init__(name, **options)
 
     def refuse(self, what: str, reason: object) -> None:
-        """Count something that is not as it must be, and warn of it if that was not just done."""
+        """Count an invalid message, request or goal, and warn about it at a limited rate."""
         self.refused += 1
         said = ' '.join(str(reason).split())
         self.get_logger().warning(
@@ -62,13 +62,13 @@ class GuardedNode(Node):
         )
 
     def take_bytes(self, topic: Topic | ViewTopic, callback: Callable[..., None]) -> None:
-        """Subscribe to a topic; its messages are handed on as they travel, as CDR."""
+        """Subscribe to a topic; the callback receives messages as CDR bytes."""
         self.create_subscription(
             topic.ros_type, topic.name, callback, topic.subscription_qos, raw=True
         )
 
     def call_soon(self, callback: Callable[[], None]) -> None:
-        """Call something in the thread that spins this node; from any thread."""
+        """Schedule a call in the thread that spins this node; usable from any thread."""
         executor = self.executor
         if executor is not None:
             executor.create_task(callback)
@@ -76,7 +76,7 @@ class GuardedNode(Node):
     def create_service(
         self, srv_type: Any, srv_name: str, callback: Callable[..., Any], **options: Any
     ) -> Any:
-        """See :class:`Node`; what the callback stumbles over is refused with an empty response."""
+        """See :class:`Node`; a request whose callback raises gets an empty response."""
 
         def answer(request: Any, response: Any) -> Any:
             try:

@@ -1,4 +1,4 @@
-"""What comes in before the trial it belongs to is known."""
+"""Messages that arrive before their trial is announced."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ MOST_BYTES = 32 << 20
 
 
 class Inbox:
-    """Messages of trials that have not been announced here yet.
+    """Messages of trials that have not been announced yet.
 
     Topics are not ordered among each other: the first state of a trial may come before the trial.
-    Memory is bounded: the oldest go first.
+    Memory is bounded: the oldest messages are dropped.
     """
 
     def __init__(self) -> None:
@@ -23,7 +23,7 @@ class Inbox:
         self._bytes = 0
 
     def hold(self, trial_id: str, message: Any, size: int = 0) -> None:
-        """Keep a message, of so many bytes, until its trial is announced."""
+        """Keep a message of ``size`` bytes until its trial is announced."""
         held = self._held.setdefault(trial_id, deque())
         held.append((size, message))
         self._bytes += size
@@ -36,7 +36,7 @@ class Inbox:
             self._bytes -= held.popleft()[0]
 
     def take(self, trial_id: str) -> list[Any]:
-        """The messages of a trial that is known now, in the order in which they came."""
+        """Remove and return the messages of a trial, in the order of arrival."""
         held = self._held.pop(trial_id, ())
         self._bytes -= sum(size for size, _ in held)
         return [message for _, message in held]

@@ -1,14 +1,14 @@
-"""The journal of the world: the observations of the running trial, written before they are said.
+"""The journal of the world: the observations of the running trial, written before publication.
 
-A world that is started again in the middle of a trial finds its board here. A written line
-survives any end of the process at once, and a power cut as soon as a thread of its own has
+A world that is restarted in the middle of a trial restores its board from the journal. A written
+line survives the end of the process immediately, and a power cut as soon as a separate thread has
 flushed it to disk: waiting for that would take longer than the rest of a placement. One file per
 trial, ``<trial id>.journal``: a line ``blocks_planning/journal 2``, then a line
 ``order;landed;gone`` for each observation after the first. The order is ``width height column``,
-or empty; the blocks are ``width height column row``, divided by commas. Version 1, with a line
-``width height column row`` for each placement, is still read. The last line may be torn; any
-other fault sets the file aside, and nothing is deleted except the journal of a trial that is over,
-or was left for ``MOST_KEPT`` others. One process at a time writes in a folder.
+or empty; the blocks are ``width height column row``, separated by commas. Version 1, with a line
+``width height column row`` for each placement, is still read. The last line may be truncated; a
+file with any other fault is renamed. Only the journal of a finished trial is deleted, or that of an
+interrupted trial after ``MOST_KEPT`` later ones. One process at a time writes in a folder.
 """
 
 from __future__ import annotations
@@ -50,13 +50,13 @@ class Journal:
             wait_s: how long to wait for another process that writes there [s].
 
         Raises:
-            RecordError: if it can't be written to, or another process still does.
+            RecordError: if it can't be written to, or another process is still writing.
         """
         self._folder = folder
         self._descriptor: int | None = None
         self._path: Path | None = None
         self._failure: OSError | None = None
-        self._disk = ThreadPoolExecutor(1, 'journal')  # in the order in which it is asked
+        self._disk = ThreadPoolExecutor(1, 'journal')  # one thread keeps the order of requests
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self._lock = os.open(folder, os.O_RDONLY)
@@ -72,10 +72,10 @@ class Journal:
         """Open the journal of a trial, and close any other; an empty one has no file.
 
         Returns:
-            (the observations that it has already; a warning, or '')
+            (the observations in the journal; a warning, or '')
 
         Raises:
-            RecordError: if the disk does not take it, or does not give it back.
+            RecordError: if the file cannot be written or read.
         """
         self.close()
         self._path = path = self._folder / (_file_name(trial_id) + SUFFIX)
@@ -91,10 +91,10 @@ class Journal:
         """Write an observation; it is on disk soon after.
 
         Raises:
-            RecordError: if the disk does not take it; the journal is as it was.
+            RecordError: if it cannot be written; the journal is then unchanged.
         """
         if self._path is None:
-            raise RecordError(f'{self._folder}: has no journal open')
+            raise RecordError(f'{self._folder}: no journal is open')
         try:
             descriptor = self._descriptor
             if descriptor is None:
@@ -107,13 +107,13 @@ class Journal:
         self._disk.submit(self._sync, descriptor)
 
     def refuse(self) -> str:
-        """Set the open journal aside, because it cannot be right, and begin an empty one.
+        """Rename the open journal, because it is inconsistent, and begin an empty one.
 
         Returns:
             a warning
 
         Raises:
-            RecordError: if the disk does not take it.
+            RecordError: if it cannot be written.
         """
         path = self._path
         assert path is not None
@@ -123,18 +123,18 @@ class Journal:
             name = _set_aside(path)
         except OSError as error:
             raise _unwritable(path, error) from None
-        return f'{path} is of another trial; it was set aside as {name}'
+        return f'{path} is of another trial; it was renamed to {name}'
 
     def end(self) -> None:
         """Delete the journal of a finished trial."""
         path = self._path
         self.close()
         if path is not None:
-            with suppress(OSError):  # it does no harm: its trial does not run again
+            with suppress(OSError):  # harmless: its trial does not run again
                 path.unlink(missing_ok=True)
 
     def close(self) -> None:
-        """Close the open journal; it stays."""
+        """Close the open journal, and keep its file."""
         self._path = None
         if self._descriptor is not None:
             self._disk.submit(os.close, self._descriptor)
@@ -147,13 +147,13 @@ class Journal:
         os.close(self._lock)
 
     def _open(self, path: Path, observations: list[Observation]) -> int:
-        """Write all anew, so that nothing torn is left, and open it for more."""
+        """Rewrite the file, without a truncated line, and open it for appending."""
         for old in sorted(self._folder.glob(f'*{SUFFIX}'), key=_latest_first)[MOST_KEPT:]:
             old.unlink(missing_ok=True)
         temporary = path.with_suffix('.new')
         with temporary.open('wb') as file:
             file.write(b''.join([_HEADER + b'\n', *map(_line, observations)]))
-            if observations:  # an empty journal is worth no waiting
+            if observations:  # an empty journal need not be on disk
                 file.flush()
                 os.fsync(file.fileno())
         temporary.replace(path)
@@ -164,7 +164,7 @@ class Journal:
         return self._descriptor
 
     def _sync(self, descriptor: int) -> None:
-        """See a file, or the names in the folder, on disk; if not, the next one fails."""
+        """Flush a file, or the names in the folder, to disk; report a failure at the next write."""
         try:
             os.fsync(descriptor)
         except OSError as error:
@@ -183,14 +183,14 @@ def _set_aside(path: Path) -> str:
 
 
 def _read(path: Path) -> tuple[list[Observation], str]:
-    """The observations of a journal, and a warning if the file is none."""
+    """The observations of a journal, and a warning if the file is not a journal."""
     if not path.exists():
         return [], ''
     header, *lines = path.read_bytes().split(b'\n')
     pattern, parse = _FORMATS.get(header, _FORMATS[_HEADER])
-    matches = [pattern.fullmatch(line) for line in lines[:-1]]  # what follows the last is torn
+    matches = [pattern.fullmatch(line) for line in lines[:-1]]  # the rest is truncated
     if header not in _FORMATS or not all(matches):
-        return [], f'{path} is not a journal; it was set aside as {_set_aside(path)}'
+        return [], f'{path} is not a journal; it was renamed to {_set_aside(path)}'
     return [parse(match) for match in matches if match], ''
 
 
@@ -240,7 +240,7 @@ def _latest_first(path: Path) -> float:
 
 
 def _file_name(trial_id: str) -> str:
-    """A name of its own for every id; one comes from a message, and must not leave the folder."""
+    """A unique file name for an id; ids come from messages, and must not lead out of the folder."""
     plain = re.sub(r'[^A-Za-z0-9_-]', '_', trial_id)[:150]
     if plain == trial_id:
         return plain

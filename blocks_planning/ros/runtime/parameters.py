@@ -22,7 +22,7 @@ class Parameter(NamedTuple):
     range: tuple[float, float] | None = None
 
     def descriptor(self) -> ParameterDescriptor:
-        """What ``ros2 param describe`` shows."""
+        """The description that ``ros2 param describe`` shows."""
         descriptor = ParameterDescriptor(description=self.description, read_only=True)
         if self.range is not None and isinstance(self.default, float):
             least, most = map(float, self.range)
@@ -39,8 +39,8 @@ def declare(node: Node, parameters: tuple[Parameter, ...]) -> dict[str, Any]:
     """Declare a node's parameters and return their values.
 
     Raises:
-        ConfigurationError: for a parameter that the node does not have, or a value of the wrong
-            type or out of its range; naming the node, the parameter and the value.
+        ConfigurationError: for an unknown parameter, or a value of the wrong type or out of
+            range; the message names the node, the parameter and the value.
     """
     given = dict(node._parameter_overrides)  # noqa: SLF001  rclpy has no other way to see them
     known = [parameter.name for parameter in parameters]
@@ -57,7 +57,7 @@ def _declare(node: Node, parameter: Parameter, given: dict[str, Any]) -> Any:
         value = node.declare_parameter(
             parameter.name, parameter.default, parameter.descriptor()
         ).value
-        # An empty list on the command line has no type, and comes as no value.
+        # An empty list on the command line has no type, and arrives as a missing value.
         return [] if value is None and isinstance(parameter.default, list) else value
     except (InvalidParameterTypeException, InvalidParameterValueException):
         wanted = type(parameter.default).__name__

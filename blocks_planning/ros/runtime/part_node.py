@@ -1,4 +1,4 @@
-"""A part of a trial as a node: convert, let the part step, convert back."""
+"""A part of a trial as a node: converts messages, runs the steps of the part, converts back."""
 
 from __future__ import annotations
 
@@ -49,12 +49,13 @@ class Part(Protocol):
 class PartNode(GuardedNode):
     """A node that owns one part's memory.
 
-    A message that is impossible, or does not fit its trial, is refused with a warning and counted;
-    one of a trial that is not announced yet waits; the part judges everything else. While there is
-    no news, the node publishes its latched messages again: a queue that was flooded has lost them.
+    A message that is invalid, or contradicts its trial, is refused with a warning and counted; a
+    message of a trial that is not announced yet is kept; the part handles everything else. While no
+    messages arrive, the node repeats its latched messages, because a full queue may have lost them.
 
     Attributes:
-        MOST_KNOWN: trials of which messages are taken, the one that runs and those just before.
+        MOST_KNOWN: number of trials of which messages are accepted: the running one and the last
+            ones.
     """
 
     MOST_KNOWN = 1
@@ -130,7 +131,7 @@ class PartNode(GuardedNode):
         return said
 
     def receive(self, message: Message) -> None:
-        """A message from the graph that is well formed and fits its trial."""
+        """Handle a message from the graph that is well formed and consistent with its trial."""
         if isinstance(message, WorldState):
             known = getattr(self.memory, 'state', None)
             is_older = known is not None and message.sequence < known.sequence
@@ -156,9 +157,9 @@ class PartNode(GuardedNode):
         return {}
 
     def begin(self, trial: TrialStarted) -> None:
-        """Take note of the trial that runs.
+        """Set the running trial.
 
-        A trial that is announced after its end runs again: what was said in it before is void.
+        A trial that is announced after its end runs again: its earlier messages no longer count.
         """
         if self.trial is None or self.trial.trial_id != trial.trial_id:
             self._known.setdefault(trial.trial_id, Consistency(trial.spec))
@@ -180,13 +181,13 @@ class PartNode(GuardedNode):
 
     @property
     def board(self) -> Board:
-        """The board of the trial that runs; there must be one."""
+        """The board of the running trial; there must be one."""
         if self.trial is None:
-            raise RuntimeError('no trial runs')
+            raise RuntimeError('no trial is running')
         return self.trial.spec.task.board
 
     def say(self, message: Message) -> None:
-        """Publish a message, or :meth:`perform` what no topic carries."""
+        """Publish a message, or :meth:`perform` a command that has no topic."""
         topic = self._said.get(type(message))
         if topic is None:
             self.perform(message)
@@ -210,11 +211,11 @@ class PartNode(GuardedNode):
         self._outlets[topic.kind].publish(message)
 
     def wait_until_heard(self, topic: Topic) -> None:
-        """Wait, not long, until all listeners of a topic have got what was published."""
+        """Wait for a limited time until all subscribers of a topic have received the messages."""
         self._outlets[topic.kind].wait_for_all_acked(Duration(seconds=ACKNOWLEDGE_S))
 
     def perform(self, message: Message) -> None:
-        """Carry out a command of the part that no topic carries."""
+        """Carry out a command of the part that has no topic."""
         raise NotImplementedError(f'{type(message).__name__} is not for {self.get_name()}')
 
     def _receive(self, topic: Topic, data: bytes) -> None:
@@ -238,14 +239,14 @@ class PartNode(GuardedNode):
     def _hold(self, topic: Topic, message: Any, data: bytes) -> None:
         """Keep a message until its trial is announced.
 
-        Of a trial that was left it is late, and would be mistaken for a message of the next run
-        of that trial. Only the first state is the same in every run.
+        A message of an earlier trial is late, and would be mistaken for one of the next run of that
+        trial. Only the first state is kept, as it is the same in every run.
         """
         if message.trial_id not in self._left or (topic is STATE and message.sequence == 0):
             self._inbox.hold(message.trial_id, (topic, data), len(data))
 
     def _on_match(self, status: QoSPublisherMatchedInfo) -> None:
-        """Publish again what a new subscriber may have missed."""
+        """Repeat messages that a new subscriber may have missed."""
         if status.current_count_change > 0 and self.trial is not None:
             self.take(Remind(self.trial.trial_id))
 
@@ -260,13 +261,13 @@ class PartNode(GuardedNode):
         self._has_news = False
 
     def _start_over(self, trial: TrialStarted) -> None:
-        """Forget what is known of the trial, as if this node had just been started.
+        """Forget the state of the trial, as if this node had just been started.
 
-        The world shows an older board than this node knows: it was set back, or what this node
-        took for the latest state was a late message of an earlier run.
+        The world publishes an older board than this node knows: the board was reset, or this node
+        accepted a late message of an earlier run.
         """
         self.get_logger().warning(
-            f'trial {trial.trial_id}: the board was set back; starting over from what is there'
+            f'trial {trial.trial_id}: the board was reset; starting again from its current state'
         )
         self._older_states = 0
         self._latched = {topic: said for topic, said in self._latched.items() if topic is TRIAL}

@@ -18,7 +18,7 @@ _FRESH_S = 5.0
 
 
 class Around(NamedTuple):
-    """The other ends of a node's topics.
+    """The nodes at the other ends of a node's topics.
 
     Attributes:
         present: names of the present nodes, in order.
@@ -32,12 +32,12 @@ class Around(NamedTuple):
 class Peers:
     """The other nodes of a node's namespace.
 
-    Of a node that was stopped for longer than its lease and goes on, the middleware finds the ends
-    of its topics again, but not its name. So the name that an end had is kept.
+    If a node was stopped for longer than its lease and then continues, the middleware finds its
+    publishers and subscriptions again, but not its name. So the name of each endpoint is kept.
     """
 
     def __init__(self, node: Node) -> None:
-        """Nothing is looked for yet."""
+        """Start without information."""
         self._node = node
         self._names: OrderedDict[bytes, tuple[str, str]] = OrderedDict()
         self._counts: list[int] = []
@@ -45,9 +45,9 @@ class Peers:
         self._listed: defaultdict[str, set[_End]] = defaultdict(set)
 
     def missing(self, names: Iterable[str]) -> list[str]:
-        """The nodes that are not there with all of their topics.
+        """The nodes that are not present with all of their topics.
 
-        Of a node that is not of this package only the name is looked for.
+        For a node from another package only the name is checked.
         """
         ends, space = self._ends(), self._node.get_namespace()
         alive = {name for name, at in self._node.get_node_names_and_namespaces() if at == space}
@@ -68,7 +68,7 @@ class Peers:
         return Around(present, missing)
 
     def _ends(self) -> defaultdict[str, set[_End]]:
-        """Which ends each node has.
+        """The endpoints of each node.
 
         Listing them takes milliseconds, counting them far less: they are listed again when their
         number has changed, and every ``_FRESH_S``.
@@ -98,7 +98,7 @@ class Peers:
         return found
 
     def _name_of(self, info: Any) -> tuple[str, str]:
-        """Name and namespace of the node that an end is of; empty if that was never known."""
+        """Name and namespace of the node of an endpoint; empty if they were never known."""
         end = bytes(info.endpoint_gid)
         if info.node_name != _UNKNOWN:
             self._names[end] = info.node_name, info.node_namespace
@@ -109,18 +109,18 @@ class Peers:
 
 
 class _End(NamedTuple):
-    """The end of a topic, by its name, at which a node says it or listens."""
+    """An endpoint of a topic: a publisher or a subscription, by the name of the topic."""
 
     says: bool
     topic: str
 
 
 _NOT_ALWAYS_SAID = {_End(True, PROPOSAL.name)}
-"""There need not be a person, nor a page."""
+"""A person and a page are optional."""
 
 
 def _wanted(name: str) -> set[_End]:
-    """The ends that a node has when it is there; none of a node that is not of this package."""
+    """The endpoints of a node of this package; none for other nodes."""
     topics = GRAPH.get(name)
     if topics is None:
         return set()

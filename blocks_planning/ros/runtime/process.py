@@ -1,13 +1,13 @@
-"""Starting and ending a process with a node in it.
+"""Starting and ending the process of a node.
 
 rclpy's own signal handlers end one stop in ten with a traceback, and destroying a node can hang
 in the middleware with the GIL held. So signals only set an event here; the node spins in a
-thread; and a timer in C ends the process if taking the node down takes too long. A process leaves
+thread; and a timer in C ends the process if shutting down takes too long. A process ends
 within a second, with exit code 0, also during a search; BLOCKS_PLANNING_EXIT_BOUND_S gives it
 more seconds.
 
 A process that was stopped for so long that all others dropped it re-executes itself, with the same
-process id: Fast DDS does not bring all of its topics back when it goes on.
+process id, because Fast DDS does not restore all of its topics when the process continues.
 """
 
 from __future__ import annotations
@@ -62,14 +62,14 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
     """Make a node and spin it until SIGINT, SIGTERM, or its event is set; then exit.
 
     Args:
-        make_node: gets the event that ends the process; setting it is how a node ends itself.
+        make_node: called with the event that ends the process; a node sets it to end itself.
         args: of the command line; None for those of the process.
     """
     prepare_environment()
     stop = threading.Event()
     made: list[str] = []
     watching = threading.Thread(target=_watch, args=(stop, made), name='watch', daemon=True)
-    watching.start()  # before the first end of a topic exists that others could drop
+    watching.start()  # before any publisher or subscription exists that others could drop
     try:
         initialise(args)
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -93,7 +93,7 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
     spinning.start()
     _wait(stop)
     _arm_exit()
-    spinning.join(EXIT_BOUND_S / 2)  # a callback that is still busy is not torn down under
+    spinning.join(EXIT_BOUND_S / 2)  # let a running callback finish
     if not spinning.is_alive():
         finish = getattr(node, 'finish', None)
         if finish is not None:
@@ -109,12 +109,12 @@ def run(make_node: Callable[[threading.Event], Node], args: list[str] | None = N
 
 
 def initialise(args: list[str] | None, context: Context | None = None) -> None:
-    """Initialise rclpy, with handlers of signals of its own left out.
+    """Initialise rclpy without its signal handlers.
 
     Raises:
         ConfigurationError: for ROS arguments, or a file of parameters, that it can't read.
     """
-    set_logger_level('rcl', LoggingSeverity.FATAL)  # it would say less, on a line of its own
+    set_logger_level('rcl', LoggingSeverity.FATAL)  # its own message is less clear
     try:
         rclpy.init(args=args, context=context, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
@@ -127,8 +127,8 @@ def initialise(args: list[str] | None, context: Context | None = None) -> None:
 def leave_if_up(code: int) -> None:
     """End the process now if rclpy was initialised in it.
 
-    Deleting a participant of Fast DDS that has just seen others go can wait forever, with the GIL
-    held (Fast DDS issue 6513). The end of the process takes it down without that.
+    Deleting a participant of Fast DDS after others have just left can block forever, with the GIL
+    held (Fast DDS issue 6513). Ending the process avoids that.
     """
     if rclpy.utilities.ok():
         _leave(code)
@@ -142,7 +142,7 @@ def _leave(code: int) -> NoReturn:
 
 
 def _wait(stop: threading.Event) -> None:
-    """Wait for the end; it also comes when the bring-up that started this process is gone."""
+    """Wait for the end, or until the bring-up that started this process is gone."""
     parent = os.environ.get(PARENT_VARIABLE)
     while not stop.wait(_LOOK_FOR_PARENT_S):
         if parent is not None and os.getppid() != int(parent):
@@ -152,9 +152,9 @@ def _wait(stop: threading.Event) -> None:
 def _watch(stop: threading.Event, made: list[str]) -> None:
     """Re-exec this process if it was stopped for longer than the lease.
 
-    A thread of its own looks at the clocks, so that a node that is made slowly counts as running.
-    A node that is made without ever letting this thread run looks stopped, so that is forgiven
-    the second time.
+    A separate thread checks the clocks, so that a node with a slow constructor counts as running.
+    A constructor that never lets this thread run looks like a stop, so it is ignored the second
+    time.
 
     Args:
         stop: is set when the process ends.
@@ -171,7 +171,7 @@ def _watch(stop: threading.Event, made: list[str]) -> None:
         if not made:
             os.environ[_AGAIN_VARIABLE] = '1'
         name = ''.join(made) or 'a node that was starting'
-        sys.stderr.write(f'{name} was stopped for {passed_s:.1f} s, and starts again\n')
+        sys.stderr.write(f'{name} was stopped for {passed_s:.1f} s, and restarts\n')
         _begin_anew()
 
 
@@ -181,10 +181,10 @@ def _look_at_clocks() -> tuple[float, float]:
 
 
 def stood_still(passed_s: float, worked_s: float) -> bool:
-    """Whether a process was stopped, and was not just busy.
+    """Whether a process was stopped, not just busy.
 
     Args:
-        passed_s: time between two looks that should come soon after each other [s].
+        passed_s: time between two checks that should follow each other closely [s].
         worked_s: processor time of all threads of the process between them [s].
     """
     return passed_s > STOOD_STILL_S and worked_s < _MOST_WORK * passed_s
@@ -206,14 +206,14 @@ def _spin(
     failures: list[BaseException],
     drain_s: float,
 ) -> None:
-    """Spin until the end, and then for ``drain_s`` over what has arrived already."""
+    """Spin until the end, and then for ``drain_s`` to handle messages that have already arrived."""
     try:
         while not stop.is_set():
             executor.spin_once(timeout_sec=_SPIN_S)
         end = time.monotonic() + drain_s
         while time.monotonic() < end:
             executor.spin_once(timeout_sec=_DRAIN_STEP_S)
-    except BaseException as error:  # noqa: BLE001  said by the main thread, which ends the process
+    except BaseException as error:  # noqa: BLE001  reported by the main thread, which ends the process
         failures.append(error)
         stop.set()
 
@@ -226,6 +226,6 @@ def _on_signal(stop: threading.Event, received: int) -> None:
 
 
 def _arm_exit() -> None:
-    """End the process in any case: from a thread in C, which needs no GIL."""
+    """Make sure that the process ends: a thread in C, which needs no GIL, ends it."""
     nowhere = open(os.devnull, 'w')  # noqa: PTH123, SIM115  for as long as the process lives
     faulthandler.dump_traceback_later(EXIT_BOUND_S, exit=True, file=nowhere)

@@ -18,13 +18,13 @@ MOST_KILLS = 64
 STABLE_S = 5.0
 """After being ready for this time [s], the earlier deaths of a node no longer count."""
 FROM_OUTSIDE = (0, *(-number for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)))
-"""Exit codes of a process that was ended by another."""
+"""Exit codes of a process that another process ended."""
 _FIRST_PAUSE_S = 0.1
 _LONGEST_PAUSE_S = 3.2
 STOP_BOUND_S = 2.0
 PARENT_VARIABLE = 'BLOCKS_PLANNING_PARENT'
 READY_VARIABLE = 'BLOCKS_PLANNING_READY'
-"""The file descriptor on which a node tells its bring-up that it is ready."""
+"""The file descriptor on which a node reports to its bring-up that it is ready."""
 
 
 def tell_ready() -> None:
@@ -42,11 +42,11 @@ class NodeProcess:
 
     Attributes:
         name: of the executable.
-        arguments: behind ``--ros-args``.
-        restarts: how often it was started again.
-        deaths: how often in a row it crashed soon after it was ready, or before.
-        kills: how often in a row another process ended it before it was ready.
-        is_given_up: whether it is not started again.
+        arguments: those after ``--ros-args``.
+        restarts: number of restarts.
+        deaths: number of crashes in a row, before or soon after it was ready.
+        kills: number of times in a row that another process ended it before it was ready.
+        is_given_up: whether it will not be restarted.
     """
 
     name: str
@@ -62,7 +62,7 @@ class NodeProcess:
     _again_at: float | None = None
 
     def start(self) -> None:
-        """Start the process, in a session of its own: Ctrl-C is for the bring-up to pass on."""
+        """Start the process in its own session, so that only the bring-up receives Ctrl-C."""
         command = [
             sys.executable,
             '-m',
@@ -94,14 +94,14 @@ class NodeProcess:
         return self._process.pid
 
     def exit_code(self) -> int | None:
-        """How the process ended; None while it runs."""
+        """The exit code of the process; None while it runs."""
         return None if self._process is None else self._process.poll()
 
     def keep_alive(self) -> bool:
-        """Start the process again some time after it died; return False if it does so too often.
+        """Restart the process some time after it ended; return False if it ended too often.
 
-        A crash counts, unless the node had been ready for a while. A kill from outside counts
-        only if the node had not even been ready. To be called some times a second.
+        A crash counts unless the node had been ready for a while. A kill from outside counts only
+        if the node had not been ready. To be called several times a second.
         """
         if self._process is None or self.is_given_up:
             return True
@@ -127,7 +127,7 @@ class NodeProcess:
             with suppress(BlockingIOError):
                 if os.read(self._ready, 16):
                     self._ready_at = now
-                self._close_ready()  # also if the process has ended without a word
+                self._close_ready()  # also if the process ended before it was ready
         lives = self._ready_at is not None and self._again_at is None
         if lives and now - (self._ready_at or now) >= STABLE_S:
             self.deaths = self.kills = 0
@@ -146,13 +146,13 @@ class NodeProcess:
             self._ready = None
 
     def signal(self, number: int) -> None:
-        """Send a signal, if the process is there to take it."""
+        """Send a signal, if the process is running."""
         if self._process is not None and self._process.poll() is None:
             with suppress(ProcessLookupError):
                 self._process.send_signal(number)
 
     def wait(self, deadline: float) -> None:
-        """Wait for the process to end, and end it at the deadline (of the monotonic clock)."""
+        """Wait for the process to end; kill it at the deadline (monotonic clock) [s]."""
         self._close_ready()
         if self._process is None:
             return

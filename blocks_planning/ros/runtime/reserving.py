@@ -18,7 +18,7 @@ class ReservedPort:
         """Reserve a port; 0: any free one.
 
         Raises:
-            ConfigurationError: if the host is no address of this machine, or the port is taken.
+            ConfigurationError: if the host is not an address of this machine, or the port is taken.
         """
         try:
             self._socket = _bound(host, port)

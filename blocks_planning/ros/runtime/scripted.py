@@ -11,10 +11,10 @@ from blocks_planning.trials.spec import TrialSpec
 
 
 class ScriptRun:
-    """The trials of a script that have no record yet, one after the other.
+    """Runs the trials of a script that have no record yet, one after the other.
 
     Attributes:
-        has_begun: whether the first of them was asked for.
+        has_begun: whether the first of them was started.
     """
 
     def __init__(
@@ -31,8 +31,8 @@ class ScriptRun:
             path: of the script.
             participant: code of the person who plans; '' for that of the script.
             finished: ids of the trials that have a record.
-            make_timer: makes a timer of a period [s] with a callback.
-            start: starts a trial; None after the last one.
+            make_timer: creates a timer from a period [s] and a callback.
+            start: starts a trial; called with None after the last one.
 
         Raises:
             InvalidInput: if the script cannot be used.

@@ -1,7 +1,7 @@
 """One node per name: a second one would receive the same messages and repeat the same work.
 
-The claim is a socket without a file, which Linux closes with the process, however that ends. It
-holds for the processes of one machine.
+The claim is an abstract socket, which Linux closes when the process ends for any reason. It
+applies to the processes of one machine.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ def claim_name(domain: int, name: str, wait_s: float = CLAIM_WAIT_S) -> socket.s
         if time.monotonic() >= deadline:
             claim.close()
             raise LimitExceeded(
-                f'node {name} runs already in ROS domain {domain} on this machine: end it, or '
-                'name another namespace'
+                f'node {name} is already running in ROS domain {domain} on this machine: end it, or '
+                'choose another namespace'
             )
         time.sleep(_LOOK_S)
     return claim

@@ -1,1 +1,1 @@
-"""What goes over the wire: topics, quality of service, conversions."""
+"""Communication: topics, quality of service, and conversions of messages."""

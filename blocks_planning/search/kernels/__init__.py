@@ -1,1 +1,1 @@
-"""Compiled searches. Only :mod:`blocks_planning.search` calls them; arguments are trusted."""
+"""Compiled searches. Only :mod:`blocks_planning.search` calls them; arguments are not checked."""

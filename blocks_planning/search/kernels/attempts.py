@@ -1,7 +1,7 @@
 """Attempt after attempt, until one succeeds or the budget is reached. Compiled.
 
-The loop is one for all searches: the type of the search, which carries its settings and its
-memory, decides which attempt is compiled into it.
+All searches share this loop: the type of the search, which contains its settings and its memory,
+selects the attempt that is compiled into it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _ATTEMPTS = {
 
 
 class Conditions(NamedTuple):
-    """Under which attempts are made, and their memory."""
+    """The conditions of attempts, and their memory."""
 
     seed_words: np.ndarray  # uint64 (9,): trial seed, state, region
     budget: int  # [states]
@@ -43,7 +43,7 @@ class Conditions(NamedTuple):
 
 
 def attempt(search, tables, shadow, filled, generator, cancel, path):
-    """One attempt of whichever search it is.
+    """One attempt of any search.
 
     Returns:
         (outcome, number of moves written to ``path``, states evaluated)
@@ -64,11 +64,11 @@ def _attempt(search, tables, shadow, filled, generator, cancel, path):
 def run_attempts(search, tables, shadow, filled, conditions):
     """Make attempts until one is complete or cancelled, or the budget is reached.
 
-    There is always one attempt, and there are at most as many as the budget has states, so that
-    attempts that cost nothing come to an end.
+    There is at least one attempt, and at most as many as the budget has states, so that attempts
+    without cost end too.
 
     Args:
-        search: which one it is, by its type.
+        search: the search; its type selects the attempt.
         tables: of the region.
         shadow: of the state, a mask.
         filled: of the state [cells].

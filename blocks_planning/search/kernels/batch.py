@@ -1,7 +1,7 @@
 """Many problems of one task, solved one after the other in a single call. Compiled.
 
-What a region needs is made here as well: the tables of a region differ in its area and in the
-places from which each block is inside it.
+The tables of each region are computed here as well: they differ only in the area of the region and
+in the places at which each block is inside it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Batch(NamedTuple):
     region: np.ndarray  # mask (n,)
     seed_words: np.ndarray  # uint64 (n, 8): state and region
     steps: int  # height of the board [cells]
-    stop: np.ndarray  # uint8 (1,): other than 0 to take up no further problem
+    stop: np.ndarray  # uint8 (1,): if not 0, no further problem is started
     outcome: np.ndarray  # int64 (n,); see :mod:`.outcomes`
     length: np.ndarray  # int64 (n,) [placements]
     path: np.ndarray  # int64 (n, most placements): the moves of the last attempt
@@ -35,7 +35,7 @@ class Batch(NamedTuple):
 
 @inlined
 def _shadow(tables, built, steps):
-    """The cells of a state and all below them, a mask."""
+    """The shadow of a state (its cells and all cells below them), a mask."""
     shadow = built
     for _ in range(steps - 1):
         shadow = shadow | ((shadow & load(tables.board, 1)) >> np.uint64(1))
@@ -44,7 +44,7 @@ def _shadow(tables, built, steps):
 
 @inlined
 def _tables_of(tables, footprints, region):
-    """Write where each block is inside a region; return the region's tables.
+    """Write the places at which each block is inside a region; return the tables of the region.
 
     ``footprints`` are the cells of the blocks by move, mask (blocks * cells,).
     """
@@ -73,10 +73,10 @@ def solve_batch(search, tables, footprints, batch, conditions):
     """Solve every problem of a batch, unless stopped.
 
     Args:
-        search: which one it is, by its type.
-        tables: of the task; what belongs to a region is overwritten.
+        search: the search; its type selects the attempt.
+        tables: of the task; the parts that depend on the region are overwritten.
         footprints: the cells of the blocks by move, mask (blocks * cells,).
-        batch: the problems, and where their answers are written.
+        batch: the problems, and the arrays for their answers.
         conditions: of every attempt.
     """
     for index in range(batch.outcome.size):

@@ -1,8 +1,8 @@
 """Beam search, compiled.
 
-The children of a level are not stored. They are generated twice: once to count them by their
-number of filled cells, which gives the number that the worst kept state has, and once to keep
-them. So the memory is that of the states kept.
+The children of a level are not stored. They are generated twice: first to count them by their
+number of filled cells, which gives the threshold for keeping a state, then to keep the best ones.
+So only the kept states need memory.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _MOVE = (1 << _MOVE_BITS) - 1
 
 
 class Beam(NamedTuple):
-    """Settings and memory of a search: the states kept, level after level; ``mask`` as in tables."""
+    """Settings and memory of a search: the kept states, level by level; ``mask`` as in tables."""
 
     width: int
     shadow: np.ndarray  # mask (n,)
@@ -40,7 +40,7 @@ class Beam(NamedTuple):
 
 
 def make_search(tables: Tables, width: int, nodes: int) -> Beam:
-    """A search with room for so many states kept, of all levels."""
+    """A search with room for ``nodes`` kept states, on all levels together."""
     mask_shape = tables.legal.shape[1:]
     return Beam(
         width=width,
@@ -74,10 +74,10 @@ def _count_children(search, tables, start, end, cancel):
 
 @inlined
 def _threshold(search, total):
-    """Where the best ``width`` of ``total`` children end.
+    """The threshold of the best ``width`` of ``total`` children.
 
     Returns:
-        (filled cells of the worst that is kept, how many with as many cells are kept)
+        (filled cells of the worst kept children, number of children with that many cells to keep)
     """
     wanted = min(search.width, total)
     filled = search.children.size - 1
@@ -89,10 +89,10 @@ def _threshold(search, total):
 
 @inlined
 def _keep(search, tables, start, end, least, tied, generator, cancel):
-    """Keep the children of a level with more than ``least`` cells, and ``tied`` with as many.
+    """Keep the children of a level with more than ``least`` cells, and ``tied`` with ``least``.
 
-    The tied ones are drawn in the order of generation: each with the chance that leaves every
-    choice of ``tied`` of them equally likely. Nothing is drawn if all are kept.
+    The tied ones are drawn in the order of generation, so that every choice of ``tied`` of them is
+    equally likely. Nothing is drawn if all are kept.
 
     Returns:
         The end of the next level, or -1 if cancelled.
@@ -160,7 +160,7 @@ def _write_path(search, node, path):
 
 @kernel
 def attempt(search, tables, shadow, filled, generator, cancel, path):
-    """Search once: the best state is complete, or nothing legal is left in it.
+    """Search once: the best state is complete, or no legal placement is left in it.
 
     Returns:
         (outcome, number of moves written to ``path``, states evaluated)

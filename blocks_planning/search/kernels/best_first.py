@@ -1,11 +1,11 @@
 """A* and best-first search, compiled.
 
-The priority f of a node depends on the blocks placed and the cells left, and takes few values.
-So the queue is one list of nodes per value (a bucket), numbered in the order of f: a node is
-taken from a uniformly drawn place in the lowest bucket that is not empty, and the last node of
-the bucket moves into its place.
+The priority f of a node depends on the blocks placed and the cells left, and has few values. So the
+queue has one list of nodes (a bucket) per value, numbered in the order of f: a node is taken from a
+uniformly drawn place of the lowest non-empty bucket, and the last node of the bucket moves into
+that place.
 
-A node in the queue is 8 bytes, its parent and its move; its state is made when it is taken.
+A node in the queue needs 8 bytes: its parent and its move. Its state is computed when it is taken.
 """
 
 from __future__ import annotations
@@ -38,22 +38,22 @@ class BestFirst(NamedTuple):
 
     iterations: int
     bucket: np.ndarray  # int64 (most blocks placed + 1, most cells left + 1): by rank of f
-    whole_path: bool  # place the whole path of a search that found nothing complete
+    whole_path: bool  # execute the whole path of a search without a complete state
     shadow: np.ndarray  # mask (iterations,): of the nodes taken, in order
     filled: np.ndarray  # int64 (iterations,) [cells]
     origin: np.ndarray  # int64 (iterations,): parent << 16 | move; -1 for the root
     length: np.ndarray  # int64 (iterations,): blocks placed since the search began
     moves: np.ndarray  # mask (blocks,)
     buckets: np.ndarray  # int64 (3, values): start, size and capacity of each list in the arena
-    arena: np.ndarray  # int64 (n,): where the lists lie
+    arena: np.ndarray  # int64 (n,): contains the lists
 
 
 def make_search(
     tables: Tables, iterations: int, bucket: np.ndarray, whole_path: bool, nodes: int
 ) -> BestFirst:
-    """A search with room for so many nodes in its queue.
+    """A search with a queue of limited size.
 
-    Memory that is not touched is not taken, so that many iterations cost nothing until used.
+    Memory that is never touched is not allocated by the system, so unused iterations need none.
     """
     mask_shape = tables.legal.shape[1:]
     return BestFirst(
@@ -72,10 +72,10 @@ def make_search(
 
 @inlined
 def _room(search, value, more, used):
-    """Make room for so many more nodes in a bucket, if the arena is large enough.
+    """Make room for ``more`` nodes in a bucket, if the arena is large enough.
 
     Returns:
-        Number of places of the arena that are used, then; or would be.
+        Number of places of the arena that are used afterwards, or would be needed.
     """
     buckets, arena = search.buckets, search.arena
     start, size = buckets[_START, value], buckets[_SIZE, value]
@@ -93,7 +93,7 @@ def _room(search, value, more, used):
 
 @inlined
 def _draw(search, value, generator):
-    """Take a node from a uniformly drawn place of a bucket that is not empty."""
+    """Take a node from a uniformly drawn place of a non-empty bucket."""
     buckets, arena = search.buckets, search.arena
     start, size = buckets[_START, value], buckets[_SIZE, value]
     place = start + below(generator, size)
@@ -177,7 +177,7 @@ def _write_path(search, node, path, start):
 
 @kernel
 def attempt(search, tables, shadow, filled, generator, cancel, path):
-    """Search and place, until the region is filled or nothing legal is left.
+    """Search and place, until the region is filled or no legal placement is left.
 
     Returns:
         (outcome, number of moves written to ``path``, states evaluated)

@@ -1,6 +1,6 @@
-"""Breadth-first lookahead: choosing among the best tree nodes, and attempts made of that. Compiled.
+"""Breadth-first lookahead: the choice among the best tree nodes, and attempts. Compiled.
 
-How the tree is walked and its nodes are judged is in :mod:`.lookahead`.
+The traversal of the tree and the evaluation of its nodes are in :mod:`.lookahead`.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def decide(search, tables, shadow, filled, generator, cancel):
 
 @kernel
 def attempt(search, tables, shadow, filled, generator, cancel, path):
-    """Look ahead and place, until the region is filled or nothing legal is left.
+    """Look ahead and place, until the region is filled or no legal placement is left.
 
     Returns:
         (outcome, number of moves written to ``path``, states evaluated)
@@ -81,7 +81,7 @@ def attempt(search, tables, shadow, filled, generator, cancel, path):
 
 @kernel
 def choices_from(search, tables, state, filled, cancel, moves, weights):
-    """Look ahead from a state, and write which first placements can be chosen, how likely.
+    """Look ahead from a state, and write the possible first placements with their weights.
 
     Args:
         search: of any depth.
@@ -90,12 +90,12 @@ def choices_from(search, tables, state, filled, cancel, moves, weights):
         filled: of the state [cells], less than the target.
         cancel: uint8 (1,).
         moves: where the placements are written, int64 (cells * blocks,).
-        weights: where the number of best tree nodes behind each is written, of the same size.
+        weights: where the number of best tree nodes behind each one is written, same size.
 
     Returns:
-        (states evaluated, ending, number of placements written). The ending is n > 0 if a
-        complete state was taken up, at the end of ``search.path[:n]``, which is then built whole;
-        0 if not; -1 if cancelled.
+        (states evaluated, ending, number of placements written). The ending is n > 0 if a complete
+        state was expanded, at the end of ``search.path[:n]``, which is then executed whole; 0 if
+        not; -1 if cancelled.
     """
     shadow = load(state, 0)
     evaluated, ending = look_ahead(search, tables, shadow, filled, cancel)
@@ -121,16 +121,16 @@ def count_from(search, tables, state, cancel, counts):
     """Write the number of tree nodes at depths 1 to n, summed, to ``counts``, int64 (n,).
 
     Args:
-        search: of depth n + 1, so that no level is judged as the last.
-        tables: with a target that no state reaches, so that the tree is walked to its end.
+        search: of depth n + 1, so that no level is treated as the last.
+        tables: with a target that no state reaches, so that the whole tree is traversed.
         state: the shadow of the root, mask (1,).
         cancel: uint8 (1,).
         counts: where they are written.
 
     Returns:
-        Whether it was finished, and not cancelled.
+        Whether the count was finished and not cancelled.
     """
-    search.best[0] = COMPLETE_VALUE + 1  # nobody's vote counts
+    search.best[0] = COMPLETE_VALUE + 1  # no vote counts
     shadow = load(state, 0)
     total = take_up(search, tables, 0, shadow, 0, 0)
     counts[0] = total

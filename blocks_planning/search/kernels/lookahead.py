@@ -1,16 +1,16 @@
-"""The tree that breadth-first lookahead walks, and the tree nodes that are the best. Compiled.
+"""The tree of breadth-first lookahead, and its best nodes. Compiled.
 
-Nothing is stored but one path: the nodes of each level are visited in the order in which a
-breadth-first search generates them by walking down to that level once more, which costs little
-as a level is many times larger than the one before. The last level is only counted, except
-where one of its nodes can be the choice or tie with it.
+Only one path is stored. The nodes of each level are visited in the order in which a breadth-first
+search generates them, by walking down to that level again. This costs little, because each level is
+many times larger than the previous one. The last level is only counted, except where one of its
+nodes can be the best or tie with it.
 
-Which node wins matters only through its first placement. So the tree nodes that are the best so
-far are kept as ``votes``: their number by depth and by first placement, int64 (depth, firsts),
-in which the uniform draw over tree nodes in the order of generation is a walk.
+Only the first placement of the chosen node matters. So the best tree nodes so far are stored as
+``votes``: their number by depth and by first placement, int64 (depth, firsts). A uniform draw over
+tree nodes in the order of generation goes through these numbers.
 
-A state without a legal placement (a dead end) can rank below all others. Whether a node of the
-last level is one is found out by looking one level further, which is not counted.
+A state without a legal placement (a dead end) can rank below all others. To detect dead ends
+on the last level, the search looks one level further, which is not counted.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from blocks_planning.board.kernels.moves import Tables, has_move, legal_moves
 COMPLETE_VALUE = 1 << 30
 """The value of a complete state: above every number of filled cells."""
 BROKEN_OFF = -2
-"""An ending: the cancel flag was up."""
+"""An ending: the cancel flag was set."""
 _TAKEN_UP_COMPLETE = -1
 _DEAD_END = -1
 _NOBODY = -3
@@ -46,7 +46,7 @@ class BreadthFirst(NamedTuple):
     depth: int
     dead_ends_last: bool  # a state without a legal placement ranks below all others
     shadow: np.ndarray  # mask (depth + 1,): of the node on the path at each level
-    moves: np.ndarray  # mask ((depth + 1) * blocks,): moves still to be taken at each level
+    moves: np.ndarray  # mask ((depth + 1) * blocks,): remaining moves at each level
     filled: np.ndarray  # int64 (depth + 1,) [cells]
     block: np.ndarray  # int64 (depth + 1,): the block whose moves are being taken
     path: np.ndarray  # int64 (depth + 1,): the move taken at each level
@@ -75,7 +75,7 @@ def make_search(tables: Tables, depth: int, dead_ends_last: bool = True) -> Brea
 
 @inlined
 def _vote(search, value, depth, first, number):
-    """Count so many tree nodes of a value if none seen so far is better."""
+    """Count ``number`` tree nodes of a value, if no node so far is better."""
     if value > search.best[0]:
         search.best[0] = value
         for level in range(search.depth):
@@ -87,7 +87,7 @@ def _vote(search, value, depth, first, number):
 
 @inlined
 def _vote_for_last_level(search, tables, shadow, filled, first):
-    """Judge the children of a node of level ``depth - 1``, as far as one can be the choice."""
+    """Evaluate the children of a node of level ``depth - 1``, if one of them can be the best."""
     depth, blocks = search.depth, tables.area.size
     child = 0
     for block in range(blocks):
@@ -114,7 +114,7 @@ def _vote_for_last_level(search, tables, shadow, filled, first):
 
 @inlined
 def take_up(search, tables, level, shadow, filled, first):
-    """Expand a node of some level: count its children, judge it, judge the last level.
+    """Expand a node: count its children, evaluate it, and evaluate children on the last level.
 
     Returns:
         The number of children, or -1 if the node is complete.
@@ -134,7 +134,7 @@ def take_up(search, tables, level, shadow, filled, first):
 
 @inlined
 def expand_level(search, tables, level, shadow, filled, cancel):
-    """Take up every node of a level, 1 or more, in the order of generation.
+    """Expand every node of a level, 1 or more, in the order of generation.
 
     Returns:
         (children generated, 0), and -1 in the second place if a node was complete and the search
@@ -186,8 +186,8 @@ def look_ahead(search, tables, shadow, filled, cancel):
     """Search once from a state.
 
     Returns:
-        (states evaluated, ending). The ending is 0 if the votes have to decide; n > 0 if a state
-        taken up was complete, at the end of ``search.path[:n]``; -2 if cancelled.
+        (states evaluated, ending). The ending is 0 if the votes decide; n > 0 if an
+        expanded state was complete, at the end of ``search.path[:n]``; -2 if cancelled.
     """
     search.best[0] = _NOBODY
     cost = take_up(search, tables, 0, shadow, filled, 0)

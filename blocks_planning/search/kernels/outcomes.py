@@ -1,18 +1,18 @@
-"""How an attempt ends, as the numbers that kernels return."""
+"""Codes of the end of an attempt, as kernels return them."""
 
 from __future__ import annotations
 
 COMPLETE = 0
 """The region is filled."""
 STUCK = 1
-"""Nothing legal is left, or nothing was chosen."""
+"""No legal placement is left, or none was chosen."""
 CANCELLED = 2
-"""The cancel flag was up."""
+"""The cancel flag was set."""
 OUT_OF_MEMORY = 3
-"""The memory that was handed over is too small: hand over more and ask again."""
+"""The memory is too small: call again with more."""
 SOLVED_ALREADY = 4
-"""The region is filled before anything is placed."""
+"""The region is already filled."""
 NO_PLACEMENT = 5
-"""Nothing legal can be placed at all."""
+"""There is no legal placement."""
 NOT_ASKED = 6
-"""The problem was not taken up."""
+"""The problem was not started."""

@@ -33,7 +33,7 @@ def make_search(tables: Tables) -> RandomPlacement:
 
 @inlined
 def move_number(tables, moves, index):
-    """The legal move that is generated as number ``index``, from 0."""
+    """The legal move with a number in the order of generation, from 0."""
     for block in range(tables.area.size):
         places = load(moves, block)
         while not is_empty(places):
@@ -46,7 +46,7 @@ def move_number(tables, moves, index):
 
 @kernel
 def attempt(search, tables, shadow, filled, generator, cancel, path):
-    """Place legal blocks, uniformly, until the region is filled or nothing legal is left.
+    """Make uniformly drawn legal placements, until the region is filled or none is left.
 
     Returns:
         (outcome, number of moves written to ``path``, states evaluated: 0)
@@ -66,10 +66,10 @@ def attempt(search, tables, shadow, filled, generator, cancel, path):
 
 @kernel
 def spread(search, tables, region, states, filled, chances, after, areas, after_chances):
-    """Take every legal placement in every state of a layer, and write where that leads.
+    """Make every legal placement in every state of a layer, and write the resulting states.
 
-    States from which the region can't be filled any more, as a cell of it is shadowed and empty,
-    are left out.
+    States from which the region can't be filled any more, because an empty cell of it is in the
+    shadow, are omitted.
 
     Args:
         search: memory.
@@ -80,10 +80,10 @@ def spread(search, tables, region, states, filled, chances, after, areas, after_
         chances: their probabilities, float64 (n,).
         after: where the shadows that follow are written, mask (m,), with room for all.
         areas: where the area of the block that leads there is written, int64 (m,) [cells].
-        after_chances: where the probability of that way is written, float64 (m,).
+        after_chances: where the probability of that placement is written, float64 (m,).
 
     Returns:
-        Number of ways written.
+        Number of results written.
     """
     written = 0
     wanted = load(region, 0)

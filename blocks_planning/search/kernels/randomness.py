@@ -24,7 +24,7 @@ def mix(word):
 
 @inlined
 def seed(generator, words, attempt):
-    """Start the generator of an attempt: of the uint64 ``words`` (n,), then its number."""
+    """Seed the generator of an attempt with the uint64 ``words`` (n,), then its number."""
     key = _ZERO
     for word in words:
         key = mix((key ^ word) + _GAMMA)

@@ -1,7 +1,7 @@
-"""Chances of success where blocks slip: backward over the states, compiled.
+"""Probabilities of success where blocks slip: a backward pass over the states. Compiled.
 
-Each pass goes through the states by falling number of filled cells, so that whatever follows
-from a state is known before it. All probabilities of slipping are handled in one pass.
+Each pass goes through the states by falling number of filled cells, so that all successors of a
+state are known before it. One pass handles all probabilities of slipping.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ _CHECK_EVERY = 256
 
 
 class Plans(NamedTuple):
-    """What a breadth-first search does in each state that it can come to.
+    """The choices of a breadth-first search in each state that it can reach.
 
     The entries of state i are ``moves`` and ``weights`` from ``begin[i]`` to ``end[i]``: first
     placements with weights, or, if ``is_path[i]``, the placements of a complete path.
     """
 
-    wanted: np.ndarray  # uint8 (n,): whether the search can come to the state
+    wanted: np.ndarray  # uint8 (n,): whether the search can reach the state
     is_path: np.ndarray  # uint8 (n,)
     begin: np.ndarray  # int64 (n,)
     end: np.ndarray  # int64 (n,)
@@ -39,7 +39,7 @@ class Plans(NamedTuple):
 
 @inlined
 def _worth(values, child, column, slip, k):
-    """The chance of success after an order for ``column``, an index of ``child``."""
+    """The probability of success after an order for ``column``, an index of ``child``."""
     here, left, right = child[column], child[column - 1], child[column + 1]
     left = here if left < 0 else left
     right = here if right < 0 else right
@@ -49,21 +49,21 @@ def _worth(values, child, column, slip, k):
 
 @kernel
 def evaluate(space, order, start, slips, best, mean, cancel):
-    """Write the chances of the best policy, and of legal placements at random.
+    """Write the probabilities of success of the best policy, and of random legal placements.
 
     Args:
         space: with every state.
         order: the states by falling number of filled cells, int64 (n,); the complete state, if it
             can be reached, is not among them.
-        start: where in the order to begin.
+        start: index in the order at which to begin.
         slips: probabilities that a block slips, float64 (s,).
-        best: chance of the best policy by state, float64 (n, s); that of the complete state is 1
-            and all others are 0.
+        best: probability of the best policy by state, float64 (n, s); initially 1 for the complete
+            state and 0 for all others.
         mean: the same for random placement.
         cancel: uint8 (1,).
 
     Returns:
-        How much of the order was done: all, or less if the flag was up.
+        Index in the order after the last processed state; less than n if the flag was set.
     """
     for place in range(start, order.size):
         if place % _CHECK_EVERY == 0 and cancel[0] != 0:
@@ -91,7 +91,7 @@ def evaluate(space, order, start, slips, best, mean, cancel):
 
 @inlined
 def _take(space, shadow, filled, move):
-    """Find where the block of a move can land; return its column as an index of ``child``."""
+    """Find where the block of a move can land; return its column, an index of ``child``."""
     legal_moves(space.possible, shadow, space.places, 0)
     block = move // space.tables.cells
     land(space, shadow, filled, block, False)
@@ -100,14 +100,14 @@ def _take(space, shadow, filled, move):
 
 @inlined
 def _mark(plans, number):
-    """Note that the search can come to a state."""
+    """Mark a state as reachable by the search."""
     if number > 0:
         plans.wanted[number] = 1
 
 
 @inlined
 def _mark_from(space, plans, index, slipping):
-    """Note every state that the entries of state ``index`` can lead to."""
+    """Mark every state to which the entries of state ``index`` can lead."""
     shadow, filled = load(space.shadow, index), np.int64(space.filled[index])
     for entry in range(plans.begin[index], plans.end[index]):
         move = plans.moves[entry]
@@ -124,21 +124,21 @@ def _mark_from(space, plans, index, slipping):
 
 @kernel
 def plan_ahead(search, space, order, start, slipping, plans, written, cancel):
-    """Look ahead, breadth first, in every state that the search can come to.
+    """Look ahead, breadth first, in every state that the search can reach.
 
     Args:
         search: of any depth.
         space: with every state.
         order: the states by rising number of filled cells, int64 (n,), without the complete one.
-        start: where in the order to begin.
+        start: index in the order at which to begin.
         slipping: whether blocks can slip.
-        plans: the first state is wanted; where the entries are written.
+        plans: where the entries are written; the first state is marked as wanted.
         written: number of entries written so far.
         cancel: uint8 (1,).
 
     Returns:
-        (how much of the order was done, number of entries written); not all is done if the room
-        for entries was used up or the flag was up.
+        (index in the order after the last processed state, number of entries written); the index is
+        less than n if the room for entries was used up or the flag was set.
     """
     for place in range(start, order.size):
         index = order[place]
@@ -173,7 +173,7 @@ def plan_ahead(search, space, order, start, slipping, plans, written, cancel):
 
 @inlined
 def _choose_first(space, plans, index, slips, values):
-    """The chances of a state in which one first placement is chosen by weight."""
+    """The probabilities of a state in which one first placement is chosen by weight."""
     shadow, filled = load(space.shadow, index), np.int64(space.filled[index])
     total = 0
     for entry in range(plans.begin[index], plans.end[index]):
@@ -187,7 +187,7 @@ def _choose_first(space, plans, index, slips, values):
 
 @inlined
 def _follow_path(space, plans, index, slips, values, reaching):
-    """The chances of a state from which a complete path is built until a block slips."""
+    """The probabilities of a state from which a complete path is executed until a block slips."""
     shadow, filled = load(space.shadow, index), np.int64(space.filled[index])
     for k in range(slips.size):
         reaching[k] = 1.0
@@ -208,20 +208,20 @@ def _follow_path(space, plans, index, slips, values, reaching):
 
 @kernel
 def follow_plans(space, order, start, slips, plans, values, reaching, cancel):
-    """Write the chances of breadth-first lookahead in every state that it can come to.
+    """Write the probabilities of breadth-first lookahead in every state that it can reach.
 
     Args:
         space: with every state.
         order: as in :func:`evaluate`.
-        start: where in the order to begin.
+        start: index in the order at which to begin.
         slips: probabilities that a block slips, float64 (s,).
-        plans: what :func:`plan_ahead` wrote.
-        values: float64 (n, s): that of the complete state is 1 and all others are 0.
+        plans: from :func:`plan_ahead`.
+        values: float64 (n, s), initially 1 for the complete state and 0 for all others.
         reaching: memory, float64 (s,).
         cancel: uint8 (1,).
 
     Returns:
-        How much of the order was done: all, or less if the flag was up.
+        Index in the order after the last processed state; less than n if the flag was set.
     """
     for place in range(start, order.size):
         if place % _CHECK_EVERY == 0 and cancel[0] != 0:

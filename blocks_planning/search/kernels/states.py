@@ -1,9 +1,9 @@
 """The states from which a region can still be filled, by number. Compiled.
 
 A state is *alive* if no cell of the region lies empty under a filled one and nothing outside the
-region is filled. Its shadow says all about it. An alive state follows from another only by a
-legal placement, whether that was ordered or the block slipped there; so one set of states serves
-every probability of slipping, and every policy.
+region is filled. Its shadow determines it. An alive state follows from another one only by a legal
+placement, ordered or by slipping; so one set of states is valid for every probability of slipping
+and every policy.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from blocks_planning.board.kernels.masks import (
 from blocks_planning.board.kernels.moves import Tables, legal_moves
 
 DEAD = 0
-"""The number that stands for every state that is not alive."""
+"""The number of all states that are not alive."""
 IMPOSSIBLE = -1
 """In ``Space.child``: the block cannot land in this column."""
 _CHECK_EVERY = 1024
@@ -44,8 +44,8 @@ class Space(NamedTuple):
     shadow: np.ndarray  # mask (n,)
     filled: np.ndarray  # int32 (n,) [cells]
     slots: np.ndarray  # int32 (2**k,): hash table of numbers, 0 where free, at least 2 n
-    used: np.ndarray  # int64 (1,): numbers in use, with state 0
-    places: np.ndarray  # mask (blocks,): where blocks land, of the state being looked at
+    used: np.ndarray  # int64 (1,): count of used numbers, including state 0
+    places: np.ndarray  # mask (blocks,): landing places in the current state
     child: np.ndarray  # int64 (width + 2,): state after a block, by its column + 1
     legal: np.ndarray  # uint8 (width + 2,): whether that placement is legal
 
@@ -62,10 +62,10 @@ def _slot(space, shadow):
 
 @inlined
 def land(space, shadow, filled, block, adding):
-    """Write to ``space.child`` and ``space.legal`` where a block lands in each column.
+    """Write to ``space.child`` and ``space.legal`` the results of a block in each column.
 
-    ``space.places`` must hold the possible landing places of the state. ``adding`` says whether
-    states that are new get a number; without, every alive state must have one.
+    ``space.places`` must hold the possible landing places of the state. ``adding``: whether
+    new states get a number; otherwise every alive state must have one.
 
     Returns:
         The number of legal placements of the block.
@@ -102,17 +102,17 @@ def land(space, shadow, filled, block, adding):
 
 @kernel
 def expand(space, first, most, cancel):
-    """Find every state that follows from the states ``first`` and up, found ones included.
+    """Find every state that follows from the states ``first`` and later, including new ones.
 
     Args:
         space: with the states so far.
-        first: number of the first state to look at.
-        most: states to look at before returning.
+        first: number of the first state to expand.
+        most: number of states to expand before returning.
         cancel: uint8 (1,).
 
     Returns:
-        The first state that was not looked at. It is not the last one plus 1 if the room for
-        more states, or ``most``, was used up, or the flag was up.
+        The first state that was not expanded: the last one plus 1, or less if the room for states,
+        or ``most``, was used up, or the flag was set.
     """
     children = space.tables.area.size * (space.child.size - 2)
     end = first + most
@@ -131,12 +131,12 @@ def expand(space, first, most, cancel):
 
 @kernel
 def fill_slots(space):
-    """Enter every state into an empty hash table."""
+    """Insert every state into an empty hash table."""
     for index in range(1, space.used[0]):
         space.slots[_slot(space, load(space.shadow, index))] = index
 
 
 @kernel
 def number_of(space, state):
-    """The number of the state with some shadow, mask (1,); 0 if it has none."""
+    """The number of the state with a shadow, mask (1,); 0 if there is none."""
     return np.int64(space.slots[_slot(space, load(state, 0))])

@@ -1,8 +1,8 @@
 """One step of the dynamic program that tiles a region: fill the first empty cell. Compiled.
 
-A *layer* holds the different sets of filled cells that are reached when all cells up to some cell
-are filled, with the fewest blocks, the number of arrangements, and the number of those with the
-fewest blocks for each.
+A *layer* contains the different sets of filled cells when all cells up to some cell are filled; for
+each set the fewest blocks, the number of arrangements, and the number of arrangements with the
+fewest blocks.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from blocks_planning.board.kernels.masks import digest, is_empty, load, store
 OVERFLOW = -1
 """The number of arrangements of a state needs more words."""
 TOO_MANY = -2
-"""The layer has more states than its arrays hold."""
+"""The layer has more states than fit into its arrays."""
 CANCELLED = -3
-"""The cancel flag was up."""
+"""The cancel flag was set."""
 
 NO_MOVE = -1
-"""In ``Layer.move``: the cell was filled already."""
+"""In ``Layer.move``: the cell was already filled."""
 _CHECK_EVERY = 4096
 
 
@@ -33,12 +33,12 @@ class Layer(NamedTuple):
     fewest: np.ndarray  # int64 (n,) [blocks]
     arrangements: np.ndarray  # uint64 (n, words): little-endian; no words if not counted
     optimal: np.ndarray  # uint64 (n, words): the arrangements that have the fewest blocks
-    parent: np.ndarray  # int32 (n,): a state of the layer before, on a way with fewest blocks
+    parent: np.ndarray  # int32 (n,): a state of the previous layer, with fewest blocks
     move: np.ndarray  # int16 (n,): the move that led here from it, or NO_MOVE
 
 
 def make_layer(size: int, mask_shape: tuple[int, ...], words: int) -> Layer:
-    """A layer with room for so many states; what is not touched takes no memory."""
+    """A layer with room for ``size`` states; untouched memory is not allocated by the system."""
     return Layer(
         filled=np.empty((size, *mask_shape), np.uint64),
         fewest=np.empty(size, np.int64),
@@ -74,16 +74,16 @@ def _add(counts, index, more, other):
 
 @kernel
 def fill_cell(layer, size, cell, rectangles, moves, following, slots, cancel):
-    """Fill one cell in every state of a layer, in every way.
+    """Fill one cell in every state of a layer, in all possible ways.
 
     Args:
-        layer: the states before.
+        layer: the previous states.
         size: their number.
         cell: the cell, mask (1,).
         rectangles: of the blocks that may be placed with their lower left cell there, mask (k,).
         moves: the same as moves, int16 (k,).
-        following: where the states after it are written.
-        slots: int32 (2**k,), all -1, at least twice as many as the states may be.
+        following: where the next states are written.
+        slots: int32 (2**k,), all -1, at least twice the number of possible states.
         cancel: uint8 (1,).
 
     Returns:
@@ -123,7 +123,9 @@ def fill_cell(layer, size, cell, rectangles, moves, following, slots, cancel):
                 following.move[index] = move
                 for word in range(following.optimal.shape[1]):
                     following.optimal[index, word] = layer.optimal[state, word]
-            elif blocks == following.fewest[index]:  # no more than all, so it can't overflow first
+            elif (
+                blocks == following.fewest[index]
+            ):  # at most as many as all arrangements, so no overflow
                 _add(following.optimal, index, layer.optimal, state)
             if _add(following.arrangements, index, layer.arrangements, state):
                 return OVERFLOW, generated

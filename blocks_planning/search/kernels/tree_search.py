@@ -1,9 +1,9 @@
 """Monte Carlo tree search, compiled.
 
-When a node is first gone past, room is made for all its children side by side, in the order in
-which they are generated; those without a visit are not in the tree yet. The sums of rewards are
-kept as whole numbers of cells, so that no order of adding matters. The logarithms come in a table
-(:func:`.logarithms.natural`), which is the same on every machine.
+When a walk first passes a node, room is reserved for all its children side by side, in the order of
+generation; children without a visit are not in the tree yet. The sums of rewards are whole numbers
+of cells, so the order of summation does not matter. The logarithms are in a table
+(:func:`.logarithms.natural`) that is the same on every machine.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class TreeSearch(NamedTuple):
     move: np.ndarray  # int32 (n,): that leads there
     visits: np.ndarray  # int32 (n,)
     rewards: np.ndarray  # int64 (n,): filled cells at the ends of its visits, summed [cells]
-    children: np.ndarray  # int32 (n,): their number, or -1 if that was not looked up yet
+    children: np.ndarray  # int32 (n,): their number, or -1 if it is not known yet
     first: np.ndarray  # int32 (n,): the first child
     tried: np.ndarray  # int32 (n,): number of children with a visit
     moves: np.ndarray  # mask (blocks,)
@@ -43,7 +43,7 @@ class TreeSearch(NamedTuple):
 def make_search(
     tables: Tables, iterations: int, exploration: float, logarithm: np.ndarray, nodes: int
 ) -> TreeSearch:
-    """A search with room for so many nodes, those without a visit among them."""
+    """A search with room for ``nodes`` nodes, including those without a visit."""
     mask_shape = tables.legal.shape[1:]
     return TreeSearch(
         iterations=iterations,
@@ -64,7 +64,7 @@ def make_search(
 
 @inlined
 def _enter(search, node, shadow, filled):
-    """Put a node into the tree."""
+    """Add a node to the tree."""
     store(search.shadow, node, shadow)
     search.filled[node] = filled
     search.visits[node] = 0
@@ -78,7 +78,7 @@ def _make_children(search, tables, node, used):
     """Make room for the children of a node, if there is enough.
 
     Returns:
-        Number of nodes that are used, then; or would be.
+        Number of nodes that are used afterwards, or would be needed.
     """
     number = legal_moves(tables, load(search.shadow, node), search.moves, 0)
     if used + number > search.filled.size:
@@ -97,7 +97,7 @@ def _make_children(search, tables, node, used):
 
 @inlined
 def _try_child(search, tables, node, generator):
-    """Put a uniformly drawn child that is not in the tree yet into it; return it."""
+    """Add a uniformly drawn child that is not in the tree yet; return it."""
     child = search.first[node]
     index = below(generator, search.children[node] - search.tried[node])
     while True:
@@ -141,7 +141,7 @@ def _select_child(search, tables, node, generator):
 
 @inlined
 def _roll_out(search, tables, node, generator):
-    """Place legal blocks, uniformly, until nothing legal is left.
+    """Make uniformly drawn legal placements until none is left.
 
     Returns:
         (filled cells at the end, number of placements)
@@ -159,10 +159,10 @@ def _roll_out(search, tables, node, generator):
 
 @inlined
 def _iterate(search, tables, used, generator):
-    """One iteration: select, expand, roll out, and add the reward along the way.
+    """One iteration: select, expand, roll out, and add the reward along the path.
 
     Returns:
-        (number of nodes used, more than there are if there is no room; states evaluated)
+        (number of used nodes, larger than the room if that is too small; states evaluated)
     """
     node, length, evaluated = 0, 1, 0
     search.way[0] = 0
@@ -209,7 +209,7 @@ def _most_visited(search, generator):
 
 @kernel
 def attempt(search, tables, shadow, filled, generator, cancel, path):
-    """Search and place, until the region is filled or nothing legal is left.
+    """Search and place, until the region is filled or no legal placement is left.
 
     Returns:
         (outcome, number of moves written to ``path``, states evaluated)

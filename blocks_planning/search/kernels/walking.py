@@ -1,8 +1,8 @@
-"""Every outline that legal placements lead to, and the number of ways to each. Compiled.
+"""All outlines that legal placements reach, and the number of sequences to each. Compiled.
 
-What is legal depends on the shadow of what is built alone (see :mod:`.moves`), so that states with
-one shadow go on alike and are one outline. Outlines are taken by rising number of cells, so that all
-ways to one are known before it is left.
+The legal placements depend only on the shadow of a state (see :mod:`.moves`), so states with the
+same shadow have the same continuations and are one outline. Outlines are processed by rising number
+of cells, so that all sequences to an outline are known before it is expanded.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from blocks_planning.board.kernels.masks import (
 from blocks_planning.board.kernels.moves import legal_moves
 
 FULL = -1
-"""There are more outlines than the memory holds."""
+"""There are more outlines than fit into the memory."""
 OVERFLOW = -2
-"""A number of ways needs more words."""
+"""A number of sequences needs more words."""
 CANCELLED = -3
-"""The cancel flag was up."""
+"""The cancel flag was set."""
 _CHECK_EVERY = 4096
 _NONE = -1
 
@@ -49,7 +49,7 @@ class Walks(NamedTuple):
 def make_walks(
     size: int, mask_shape: tuple[int, ...], words: int, cells: int, blocks: int
 ) -> Walks:
-    """Memory for up to ``size`` outlines; what is not touched takes none."""
+    """Memory for up to ``size`` outlines; untouched memory is not allocated by the system."""
     return Walks(
         shadow=np.empty((size, *mask_shape), np.uint64),
         ways=np.empty((size, words), np.uint64),
@@ -76,7 +76,7 @@ def _add(numbers, index, more, other):
 
 @inlined
 def _enter(walks, found, shadow):
-    """The number of an outline, and how many there are now; FULL if it has no room."""
+    """The number of an outline, and the new count of outlines; FULL if there is no room."""
     last = np.uint64(walks.slots.size - 1)
     slot = digest(shadow) & last
     while walks.slots[slot] >= 0:
@@ -98,12 +98,12 @@ def _enter(walks, found, shadow):
 
 @kernel
 def walk(walks, tables, region, cancel):
-    """Find every outline that legal placements reach from the empty board, and the ways to each.
+    """Find all outlines that legal placements reach from the empty board; count their sequences.
 
     Args:
-        walks: memory, as it was made.
+        walks: new memory.
         tables: of the region.
-        region: its cells and none, mask (2,).
+        region: the cells of the region, and an empty mask, mask (2,).
         cancel: uint8 (1,).
 
     Returns:
@@ -136,7 +136,7 @@ def walk(walks, tables, region, cancel):
                         return FULL
                     if _add(walks.ways, child, walks.ways, state):
                         return OVERFLOW
-                    # Without a hole the shadow has no cell of the region that is not filled.
+                    # Without a hole, all cells of the region in the shadow are filled.
                     if count(after & wanted) == covered + tables.area[block]:
                         _add(walks.whole, child, walks.whole, state)
             state = np.int64(walks.following[state])

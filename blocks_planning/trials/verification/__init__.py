@@ -1,5 +1,5 @@
-"""The questions that verification asks of a record, one module each.
+"""The checks of a record, one module each.
 
-Each function yields a sentence for everything that does not follow from the rest of the record.
-:func:`blocks_planning.trials.verify.contradictions` asks them all.
+Each function yields a sentence for everything that contradicts the rest of the record.
+:func:`blocks_planning.trials.verify.contradictions` runs all checks.
 """

@@ -24,7 +24,7 @@ def wrong_observations(record: TrialRecord) -> Iterator[str]:
     if not observations:
         return
     if spec.world.simulates and observations[0] != Observation(landed=spec.built):
-        yield 'observation 0 is not the board that the trial starts from'
+        yield 'observation 0 differs from the board at the start of the trial'
         return
     before = history_of(observations)
     for sequence, (seen, blocks) in enumerate(
@@ -42,19 +42,19 @@ def wrong_observations(record: TrialRecord) -> Iterator[str]:
 
 
 def wrong_status(record: TrialRecord) -> Iterator[str]:
-    """A status that the last observation and the last decision do not lead to."""
+    """A status that contradicts the last observation and the last decision."""
     reached = status_of(record.spec, record.placements, record.built)
     over = reached is not TrialStatus.BUILDING
     gave_up = bool(record.decisions) and record.decisions[-1].decision.chosen is None
-    # A trial may be cancelled before its end is seen; one that was over at the start, too.
+    # A trial may be cancelled before its end is observed, even if it was over at the start.
     may_be_cancelled = not gave_up and (not over or len(record.observations) <= 1)
     if record.status is TrialStatus.CANCELLED and may_be_cancelled:
         return
     expected = reached if over else TrialStatus.GAVE_UP
     if record.status is not expected or (gave_up and over) or not (gave_up or over):
         yield (
-            f'status {record.status.value!r}, but the placements lead to {reached.value!r} and '
+            f'status {record.status.value!r}, but the placements give {reached.value!r} and '
             f'the planner {"gave up" if gave_up else "did not give up"}'
         )
     if record.reason and record.status is not TrialStatus.CANCELLED:
-        yield f'has a reason for being cancelled, but status {record.status.value!r}'
+        yield f'a reason for cancelling is given, but the status is {record.status.value!r}'

@@ -1,7 +1,6 @@
 """Are the candidates, the choice and the costs of a decision those of the strategy?
 
-The strategy itself is asked for its chains, its values and its choice; nothing here knows how a
-strategy of a certain name decides.
+The strategy itself provides its chains, values and choice; this module knows no strategy by name.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from blocks_planning.worlds.observation import Blocks, blocks_after
 
 
 def situation_of(record: TrialRecord, index: int) -> Situation:
-    """The situation of a decision, with the answers that the record still has."""
+    """The situation of a decision, with the answers that the record contains."""
     entry = record.decisions[index]
     blocks: Blocks = ()
     for observation in record.observations[: entry.sequence + 1]:
@@ -35,7 +34,7 @@ def situation_of(record: TrialRecord, index: int) -> Situation:
 
 
 def _answers(decision: Decision) -> Iterator[tuple[Query, SolveResult]]:
-    """The answers that the executed subgoals were made of."""
+    """The answers from which the executed subgoals were made."""
     if decision.chosen is None or decision.chosen >= len(decision.candidates):
         return
     status = decision.candidates[decision.chosen].status
@@ -63,7 +62,7 @@ def wrong_decision(record: TrialRecord, index: int) -> Iterator[str]:
     chains = list(record.spec.strategy.chains(situation))
     considered = [candidate.regions for candidate in entry.decision.candidates]
     if considered != chains[: len(considered)] or len(considered) != len(chains):
-        yield 'its candidates are not those of the strategy'
+        yield 'the candidates differ from those of the strategy'
         return
     for number, candidate in enumerate(entry.decision.candidates):
         for sentence in _wrong_candidate(record, candidate, situation):
@@ -79,14 +78,14 @@ def _wrong_candidate(
 ) -> Iterator[str]:
     cells = cells_added(candidate.regions, situation.built)
     if candidate.cells != cells:
-        yield f'adds {cells} cells, not {candidate.cells}'
+        yield f'expected cells {cells}, got {candidate.cells}'
     if candidate.status is SolveStatus.CANCELLED:
-        yield 'was cancelled, which ends a trial before it decides'
+        yield 'its solve was cancelled, but then the trial ends without a decision'
     value = None
     if candidate.is_solved:
         value = record.spec.strategy.value(candidate.cells, candidate.planning_cost)
     if candidate.value != value:
-        yield f'has value {value}, not {candidate.value}'
+        yield f'expected value {value}, got {candidate.value}'
 
 
 def _wrong_choice(
@@ -94,7 +93,7 @@ def _wrong_choice(
 ) -> Iterator[str]:
     decision = entry.decision
     if entry.executed > len(decision.subgoals):
-        yield f'{entry.executed} of {len(decision.subgoals)} subgoals cannot have been executed'
+        yield f'{entry.executed} subgoals were executed, but there are {len(decision.subgoals)}'
     if (decision.chosen is None) != (not decision.subgoals):
         yield 'the chosen candidate and the executed subgoals are inconsistent'
     if decision.chosen is not None and decision.chosen >= len(decision.candidates):
@@ -111,21 +110,21 @@ def _wrong_choice(
 def _wrong_costs(record: TrialRecord, decision: Decision) -> Iterator[str]:
     expected = record.spec.strategy.considered(decision.candidates)
     if decision.subgoal_planning_cost != expected:
-        yield f'subgoal planning cost {expected} states, not {decision.subgoal_planning_cost}'
+        yield f'expected subgoal_planning_cost {expected}, got {decision.subgoal_planning_cost}'
 
 
 def _wrong_ratings(record: TrialRecord, decision: Decision, situation: Situation) -> Iterator[str]:
     strategy = record.spec.strategy
     unrated = [replace(candidate, probability=None) for candidate in decision.candidates]
     if strategy.rated(unrated, situation) != decision.candidates:
-        yield 'the probabilities of its candidates are not those of the strategy'
+        yield 'the probabilities of the candidates differ from those of the strategy'
     sequences = strategy.sequences(situation)
     if decision.sequences != sequences:
-        yield f'{sequences} sequences exist, not {decision.sequences}'
+        yield f'expected sequences {sequences}, got {decision.sequences}'
 
 
 def _wrong_subgoals(record: TrialRecord, decision: Decision, chains: list[Chain]) -> Iterator[str]:
-    """Subgoals that are not those of the chosen chain, or whose plans do not add up."""
+    """Subgoals that differ from the chosen chain, or plans with inconsistent costs."""
     if decision.chosen is None or decision.chosen >= len(chains):
         return
     strategy = record.spec.strategy
@@ -135,21 +134,18 @@ def _wrong_subgoals(record: TrialRecord, decision: Decision, chains: list[Chain]
         for region, query in zip(executed, queries_along(executed, decision.built), strict=True)
     ]
     if [(one.region, one.target) for one in decision.subgoals] != expected:
-        yield 'its subgoals are not those of the chosen candidate'
+        yield 'the subgoals differ from those of the chosen candidate'
         return
     cost = sum(subgoal.planning_cost for subgoal in decision.subgoals)
     whole = len(executed) == len(chains[decision.chosen])
     claimed = decision.candidates[decision.chosen].planning_cost
     if (cost != claimed) if whole else (cost > claimed):
-        yield 'the costs of its subgoals do not add up to that of the chosen candidate'
+        yield 'the costs of the subgoals do not add up to that of the chosen candidate'
     for number, subgoal in enumerate(decision.subgoals):
         execute = strategy.execute(len(subgoal.placements))
         if subgoal.execute != execute:
-            yield (
-                f'subgoal {number}: {execute} of its placements are to be executed, '
-                f'not {subgoal.execute}'
-            )
+            yield (f'subgoal {number}: expected execute {execute}, got {subgoal.execute}')
         if subgoal.solution_cost > subgoal.planning_cost:
-            yield f'subgoal {number}: its solution cost more than all attempts'
+            yield f'subgoal {number}: solution_cost is above planning_cost'
         if subgoal.attempts < 1:
-            yield f'subgoal {number}: is solved without an attempt'
+            yield f'subgoal {number}: it is solved without an attempt'

@@ -1,4 +1,4 @@
-"""Were the decisions made in the states in which they were due, and carried out as planned?"""
+"""Were the decisions made in the states in which they were due, and executed as planned?"""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.status import TrialStatus
 
 _ENDED_FROM_OUTSIDE = (TrialStatus.CANCELLED, TrialStatus.COLLAPSED, TrialStatus.STUCK)
-"""Statuses that can end a trial in the middle of a plan that goes as expected."""
+"""Statuses that can end a trial in the middle of a plan without a surprise."""
 
 
 def wrong_execution(record: TrialRecord) -> Iterator[str]:
-    """The first decision that was not due, or not carried out as planned."""
+    """The first decision that was not due, or not executed as planned."""
     seen = history(record.spec.task.board, record.observations)
     due = 0
     for index, entry in enumerate(record.decisions):
@@ -27,7 +27,7 @@ def wrong_execution(record: TrialRecord) -> Iterator[str]:
             yield f'decision {index}: {sentence}'
             return
     if due < len(seen.states) - 1:
-        yield f'no decision led to observation {due + 1}'
+        yield f'observation {due + 1} follows from no decision'
 
 
 def _execution(
@@ -38,9 +38,9 @@ def _execution(
     if entry.sequence != due:
         return f'was made at observation {entry.sequence}, but was due at {due}', due
     if due >= len(seen.states) or seen.states[due] != decision.built:
-        return f'the state of observation {due} is not {decision.built:#x}', due
+        return f'built is {decision.built:#x}, which is not the state of observation {due}', due
     if decision.chosen is None:
-        return ('' if is_last else 'gives up, but is not the last'), due
+        return ('' if is_last else 'gives up, but another decision follows'), due
     if decision.chosen >= len(decision.candidates):
         return 'chose no candidate', due
     start, built = due, decision.built
@@ -62,13 +62,13 @@ def _execution(
 
 
 def _wrong_plan(task: Task, built: Mask, subgoal: Subgoal, is_solved: bool) -> str:
-    """Why a plan does not fill its target, or stops before it is stuck; '' if it is right."""
+    """Why a plan does not fill its target, or stops before it is stuck; '' if it is correct."""
     for placed in subgoal.placements:
         if rules.drop(task.board, built, placed.placement) != placed:
-            return f'block {placed} of its plan is not where it comes to rest'
+            return f'block {placed} of its plan is not in the place where it comes to rest'
         built |= rules.cells_of(task.board, placed)
     if is_solved:
-        return '' if built == subgoal.target else 'its plan does not fill it'
+        return '' if built == subgoal.target else 'its plan does not fill the target'
     goes_on = next(rules.legal_placements(task, built, subgoal.target), None) is not None
     return 'its last attempt stops before it is stuck' if goes_on else ''
 
@@ -76,7 +76,7 @@ def _wrong_plan(task: Task, built: Mask, subgoal: Subgoal, is_solved: bool) -> s
 def _wrong_orders(
     record: TrialRecord, built: Mask, subgoal: Subgoal, span: Progress, start: int, seen: History
 ) -> str:
-    """Why the orders of an execution are not those of its plan; '' if they are."""
+    """Why the orders of an execution differ from its plan; '' if they do not."""
     for sequence in range(start + 1, span.sequence + 1):
         ordered = seen.observations[sequence].ordered
         if ordered is None:
@@ -84,7 +84,7 @@ def _wrong_orders(
         before = History(seen.observations[:sequence], seen.states[:sequence])
         done = progress_of(record.spec, built, subgoal, start, before).done
         if ordered != subgoal.placements[done].placement:
-            return f'observation {sequence} is of an order that was not planned'
+            return f'observation {sequence} has an order that was not planned'
     return ''
 
 
@@ -94,7 +94,7 @@ def _cut_short(
     number: int,
     progress: Progress,
 ) -> str:
-    """Why an execution must not end before everything was carried out; '' if it may."""
+    """Why an execution must not end before all placements are done; '' if it may."""
     if number < entry.executed - 1:
         return f'subgoal {number + 1} was begun before subgoal {number} was filled'
     at_end = progress.sequence == len(record.observations) - 1
@@ -104,8 +104,8 @@ def _cut_short(
 
 
 def _left_out(record: TrialRecord, entry: DecisionRecord) -> str:
-    """Why subgoals must not be left out after all that were begun are filled; '' if they may."""
+    """Why the remaining subgoals must not be omitted after those begun; '' if they may."""
     left = len(entry.decision.subgoals) - entry.executed
     if left and record.status not in _ENDED_FROM_OUTSIDE:
-        return f'{entry.executed} of its {len(entry.decision.subgoals)} subgoals were executed'
+        return f'{entry.executed} of {len(entry.decision.subgoals)} subgoals were executed'
     return ''

@@ -1,1 +1,1 @@
-"""A page that shows the graph live, and on which a person scopes."""
+"""A page that shows the trials live, and on which a person can plan."""

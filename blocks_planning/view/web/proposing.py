@@ -59,7 +59,7 @@ def parse(data: object, board: Board) -> Posted:
     if data['kind'] not in kinds:
         raise MalformedProposal(f'kind: expected {" or ".join(kinds)}, got {shown(data["kind"])}')
     if not isinstance(data['trial_id'], str):
-        raise MalformedProposal(f'trial_id: expected a text, got {shown(data["trial_id"])}')
+        raise MalformedProposal(f'trial_id: expected text, got {shown(data["trial_id"])}')
     if type(data.get('again', False)) is not bool:
         raise MalformedProposal(f'again: expected true or false, got {shown(data["again"])}')
     seconds = data['thinking_s']

@@ -56,7 +56,7 @@ def test_it_is_read_as_it_was_meant() -> None:
     [
         ({'kind': 'burn'}, "kind: expected build or withdrawn or give_up, got 'burn'"),
         ({'kind': ['build']}, 'kind: expected'),
-        ({'trial_id': 7}, 'trial_id: expected a text, got 7'),
+        ({'trial_id': 7}, 'trial_id: expected text, got 7'),
         ({'sequence': -1}, 'sequence: expected a number from 0 to 1024, got -1'),
         ({'sequence': 1025}, 'sequence: expected'),
         ({'sequence': True}, 'sequence: expected'),

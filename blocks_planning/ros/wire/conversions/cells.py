@@ -1,6 +1,6 @@
 """Cells, blocks and placements.
 
-The messages made here are kept and used again: they must not be changed.
+The messages created here are cached and reused: they must not be changed.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def placed_from_ros(board: Board, message: ros.Placement, field: str) -> Placed:
 def _placed(
     columns: int, rows: int, width: int, height: int, column: int, row: int
 ) -> Placed | None:
-    """A block where it lies; None if that is not on a board of such a size."""
+    """A block in its place; None if that is not on a board of this size."""
     is_block = 1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE
     if is_block and column + width <= columns and row + height <= rows:
         return Placed(width, height, column, row)
@@ -106,7 +106,7 @@ def _placed(
 def way_from_ros(
     board: Board, built: Mask, messages: Iterable[ros.Placement], field: str
 ) -> tuple[tuple[Placed, ...], Mask]:
-    """Placements that can be carried out one after the other, and the state they lead to."""
+    """Placements that can be carried out in order, and the state after them."""
     placements = []
     for index, message in enumerate(messages):
         placed = placed_from_ros(board, message, f'{field}[{index}]')
@@ -122,7 +122,7 @@ def way_from_ros(
 def blocks_from_ros(
     board: Board, messages: Sequence[ros.Placement], field: str
 ) -> tuple[Placed, ...]:
-    """Blocks that lie on the board, whether or not they can get there."""
+    """Blocks that lie on the board; whether they can be placed there is not checked."""
     bounded(messages, field, 0, board.size)
     return tuple(
         placed_from_ros(board, message, f'{field}[{index}]')

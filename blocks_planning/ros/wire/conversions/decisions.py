@@ -1,4 +1,4 @@
-"""Decisions: what was considered and chosen."""
+"""Decisions: the candidates and the choice."""
 
 from __future__ import annotations
 

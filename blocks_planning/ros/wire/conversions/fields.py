@@ -9,8 +9,8 @@ from blocks_planning.errors import InvalidInput
 
 T = TypeVar('T')
 MAX_COST = 1 << 48
-"""Largest cost of one solve [states]: no search counts that far in a week, and no sum over a trial
-outgrows 64 bits."""
+"""Largest cost of one solve [states]: no search reaches it in a week, and its sums over a trial fit
+into 64 bits."""
 MOST_OBSERVATIONS = 4096
 """Of a trial. A tower takes 256 placements at most; the rest are orders that were lost."""
 MOST_QUERIES = 1 << 14
@@ -26,14 +26,14 @@ class MessageError(InvalidInput):
 
 
 def refuse(field: str, value: object, expected: str) -> MessageError:
-    """The error that a field is not as it must be."""
+    """The error for an invalid field."""
     text = repr(value)
     shown = text if len(text) <= 60 else f'{text[:57]}...'
     return MessageError(f'{field}: expected {expected}, got {shown}')
 
 
 def word(kind: Callable[[str], T], value: str, field: str, words: Iterable[str]) -> T:
-    """A value that must be one of some words, made into what it stands for."""
+    """Convert a value that must be one of some words."""
     words = list(words)
     if value not in words:
         raise refuse(field, value, f'one of {", ".join(words)}')
@@ -41,21 +41,21 @@ def word(kind: Callable[[str], T], value: str, field: str, words: Iterable[str])
 
 
 def cost(value: int, field: str) -> int:
-    """A number of states that parts can add up."""
+    """Check a number of states."""
     if value > MAX_COST:
         raise refuse(field, value, f'up to {MAX_COST} states')
     return value
 
 
 def bounded(items: Sequence[T], field: str, least: int, most: int) -> Sequence[T]:
-    """A list of a message that must have ``least`` to ``most`` entries."""
+    """Check that a list of a message has ``least`` to ``most`` entries."""
     if not least <= len(items) <= most:
         raise refuse(field, f'{len(items)} entries', f'{least} to {most} entries')
     return items
 
 
 def index(value: int, items: Sequence[T], field: str) -> T:
-    """The entry of a list that a message names by its index."""
+    """The entry of a list with the index in a message."""
     if not 0 <= value < len(items):
         raise refuse(field, value, f'an index below {len(items)}')
     return items[value]

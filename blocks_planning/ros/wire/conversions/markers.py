@@ -13,19 +13,19 @@ from visualization_msgs.msg import Marker, MarkerArray
 from blocks_planning.view.solids import Box, Boxes, Lines, Point, Solid, Words
 
 _SPACE_WIDTH = 0.5
-"""Of a space between letters of height 1."""
+"""Width of a space between letters of height 1."""
 
 
 def markers_to_ros(solids: Iterable[Solid], header: Header, cell_m: float) -> MarkerArray:
-    """An array that shows these solids and nothing else, whatever its viewer showed before.
+    """An array that shows exactly these solids, independent of earlier arrays.
 
     Args:
         solids: in cells.
         header: of every marker.
         cell_m: the side of a cell [m].
     """
-    # The first marker deletes all others. So the latest array is the whole scene, also for a viewer
-    # that starts late or has missed some arrays.
+    # The first marker deletes all others. So the latest array is the whole scene, even for a
+    # viewer that starts late or has missed some arrays.
     clear = Marker(header=header, action=Marker.DELETEALL)
     return MarkerArray(markers=[clear, *(_marker(solid, header, cell_m) for solid in solids)])
 
@@ -76,7 +76,7 @@ def _shape(solid: Solid, cell_m: float) -> dict[str, Any]:
                 'scale': scaled(Vector3, (_SPACE_WIDTH * solid.height, 0.0, solid.height)),
                 'text': solid.text,
             }
-    raise TypeError(f'{type(solid).__name__} is no solid that can be a marker')
+    raise TypeError(f'{type(solid).__name__} cannot be converted to a marker')
 
 
 def _colour(colour: str, opacity: float) -> ColorRGBA:

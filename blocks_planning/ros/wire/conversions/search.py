@@ -21,7 +21,7 @@ _SOLVE_REASONS = {
     SolveStatus.SOLVED: 'the placements fill the target',
     SolveStatus.UNSOLVABLE_PROVEN: 'there is no way to fill the target',
     SolveStatus.BUDGET_EXHAUSTED: 'no attempt within the budget filled the target',
-    SolveStatus.LIMIT_EXCEEDED: 'the search would have outgrown its memory',
+    SolveStatus.LIMIT_EXCEEDED: 'the search would have exceeded its memory',
 }
 SOLVE_STATUSES = [status.value for status in _SOLVE_REASONS]
 

@@ -1,4 +1,4 @@
-"""Settings of the members of a trial: generic, by their names and types."""
+"""Settings of the members of a trial, as names and typed values."""
 
 from __future__ import annotations
 

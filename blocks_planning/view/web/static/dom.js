@@ -28,7 +28,7 @@ export function say(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** A tower by its name; of a file somewhere on the machine only the end. */
+/** The name of a tower; of a file path only the end. */
 export function nameOf(stimulus) {
   return stimulus.startsWith('/') ? stimulus.split('/').slice(-2).join('/') : stimulus;
 }

@@ -50,7 +50,7 @@ export class Drawing {
     this.#set(new Set());
   }
 
-  /** Draw again, after the board has been. */
+  /** Draw again, after the board was redrawn. */
   draw() {
     const { height } = this.board.trial;
     const layer = this.board.layers.drawn;

@@ -1,10 +1,10 @@
-// How the nodes are.
+// The health of the nodes.
 
 import { byId, html, say } from './dom.js';
 
 const lines = new Map();
 
-/** Lines are kept, so that one that is open stays open. */
+/** Lines are reused, so that an open one stays open. */
 export function showHealth(nodes) {
   if (nodes.length === 0) return;
   const place = byId('health');

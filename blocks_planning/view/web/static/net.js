@@ -57,7 +57,7 @@ export class Link {
     if (reason !== null && this.socket === null) this.onState('lost', reason);
   }
 
-  /** Why the server does not let this page in, if it is there and says so. */
+  /** The reason why the server refuses this page, if it can be reached. */
   async #reason() {
     try {
       const answer = await fetch('/trials?from=999999999');
