@@ -205,7 +205,7 @@ def test_loose_towers_collapse_and_nothing_follows() -> None:
 
 # Lies.
 
-SLIPPED = run_trial(trial(CHAIR, Scoping(0.01, aim='most'), Simulated(slip=0.4, loss=0.3), 2))
+SLIPPED = run_trial(trial(CHAIR, Scoping(0.01, aim='most'), Simulated(slip=0.4, loss=0.3), 20))
 LIED = json.loads(SLIPPED.to_line())
 
 
@@ -256,13 +256,12 @@ def test_wrong_measures_are_found(key: str) -> None:
 
 def test_observed_records_are_judged_by_what_can_stand() -> None:
     """Two narrow blocks become one wide one while an order is carried out: the same cells."""
+    tower = task('##/##/##/##', '1x2,2x1')
     plain = run_trial(
-        TrialSpec('small', task('##/##/##/##'), NoSubgoals(), BreadthFirst(3), 0, 300, Simulated())
+        TrialSpec('small', tower, NoSubgoals(), BreadthFirst(3), 0, 300, Simulated())
     )
     first, *rest = plain.observations[1:]
-    spec = TrialSpec(
-        'small', task('##/##/##/##'), NoSubgoals(), BreadthFirst(3), 0, 300, Observed()
-    )
+    spec = TrialSpec('small', tower, NoSubgoals(), BreadthFirst(3), 0, 300, Observed())
     exchanged = _exchanged(first.landed[0])
     if exchanged is None:
         pytest.fail(f'the first block is {first.landed[0]}, which cannot be exchanged')
