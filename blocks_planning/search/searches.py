@@ -111,7 +111,7 @@ class BreadthFirst(Compiled):
 def _iterations() -> Any:
     return setting(
         4096,
-        'Number of nodes taken from the queue in one search.',
+        'Number of iterations of one search (nodes taken from the queue).',
         least=2,
         most=MAX_ITERATIONS,
         unit='nodes',
@@ -228,7 +228,7 @@ class TreeSearch(Compiled):
     name: ClassVar[str] = 'mcts'
     iterations: int = setting(
         1000,
-        'Number of walks through the tree before each placement.',
+        'Number of iterations of one search (walks through the tree).',
         least=1,
         most=MAX_ITERATIONS,
         unit='iterations',
