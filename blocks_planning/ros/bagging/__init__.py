@@ -1,4 +1,4 @@
-"""Bags on disk: rosbag2 directories of MCAP files, as ROS 2 Jazzy reads them. This folder contains no node.
+"""Bags on disk: rosbag2 directories of MCAP files, as ROS 2 Jazzy reads them.
 
 ::
 
