@@ -54,6 +54,7 @@ reproduce: setup  ## Run every experiment of the paper (OUT=folder, ARGS=--quick
 	$(BIN)/blocks-planning reproduce --out $(OUT) $(ARGS)
 
 test: setup  ## Run the tests (ARGS='-k word' for some, JOBS=4 for more processes)
+	$(BIN)/python test/compile_kernels.py
 	$(BIN)/pytest -n $(JOBS) $(ARGS)
 
 parity: setup  ## Compare 272 trials through the graph with the same in one process

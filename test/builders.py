@@ -39,9 +39,11 @@ _STRATEGIES: list[Settings] = [
     {'strategy': 'none'},
     {'strategy': 'scoping', 'commit': 'subgoal', 'lam': 0.01},
     {'strategy': 'scoping', 'commit': 'action', 'lam': 0.01},
-    {'strategy': 'scoping', 'lam': 0.01, 'regions': 'rectangles', 'horizon': 2},
-    {'strategy': 'scoping', 'lam': 0.01, 'horizon': 3, 'max_sequences': 5, 'choice': 'softmax'},
     {'strategy': 'full', 'lam': 0.5},
+]
+_LOOKAHEAD: list[Settings] = [
+    {'strategy': 'scoping', 'regions': 'rectangles', 'horizon': 2, 'max_sequences': 40},
+    {'strategy': 'scoping', 'lam': 0.01, 'horizon': 3, 'max_sequences': 5, 'choice': 'softmax'},
 ]
 _OF_STRATEGY = (
     *('commit', 'regions', 'min_cells', 'horizon', 'max_sequences'),
@@ -56,8 +58,12 @@ _SEARCHES: list[Settings] = [
     {'search': 'random'},
     {'search': 'exact'},
 ]
-PLANNERS = [{**strategy, **search} for strategy, search in product(_STRATEGIES, _SEARCHES)]
-"""Settings for :func:`spec`: every strategy with every search."""
+_QUICK: list[Settings] = [{'search': 'bfs', 'depth': 1}, {'search': 'random'}]
+PLANNERS = [
+    {**strategy, **search}
+    for strategy, search in [*product(_STRATEGIES, _SEARCHES), *product(_LOOKAHEAD, _QUICK)]
+]
+"""Settings for :func:`spec`: every strategy with every search, and lookahead with quick ones."""
 
 
 def row_regions(*heights: int) -> tuple[Region, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -77,6 +78,7 @@ sys.argv = ['blocks-planning', 'solve', 'cogsci2021/9', '--json']
 main()
 """
     command = [sys.executable, '-c', code]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    environment = {k: v for k, v in os.environ.items() if k != 'AMENT_PREFIX_PATH'}
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, env=environment)
     assert done.stdout.splitlines()[0] == str(target / 'share' / PACKAGE / 'config')
     assert '"status":"success"' in done.stdout, done.stderr

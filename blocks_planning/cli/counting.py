@@ -66,9 +66,9 @@ class _Counts:
 
     def run(self, cancel: CancelToken) -> list[int] | None:
         """Count, until the token is cancelled."""
-        from blocks_planning.search.compiled import count_states
+        from blocks_planning.search.compiled import count_nodes
 
-        return count_states(self._task, len(self._numbers), cancel, self._numbers)
+        return count_nodes(self._task, len(self._numbers), cancel, self._numbers)
 
     @property
     def finished(self) -> list[int]:

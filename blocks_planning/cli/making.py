@@ -21,7 +21,7 @@ _EXAMPLES = """\b
 Examples:
   blocks-planning stimuli make --count 8 --want holes=1-2 --out holes.txt
   blocks-planning stimuli make --size 6x8 --unsolvable --out impossible.txt
-  blocks-planning stimuli make --want cost=1000- --sets 2 --balance cells,cost --out set.txt
+  blocks-planning stimuli make --sets 2 --want cost=1000- --balance cells,cost --out set.txt
 """
 
 

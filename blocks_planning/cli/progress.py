@@ -66,11 +66,20 @@ class Progress:
         self._next_line_s = FIRST_LINE_S
         self._live: Live | None = None
 
+    @property
+    def patience_s(self) -> float:
+        """Duration of work that is not reported [s]."""
+        return QUIET_S if self._is_redrawn else FIRST_LINE_S
+
+    @property
+    def _is_redrawn(self) -> bool:
+        return self._console.is_terminal and self._console.is_interactive
+
     def show(self, describe: Callable[[], str]) -> None:
         """Show a line if one is due; ``describe`` is called only then."""
         now = monotonic()
         passed = now - self._began
-        if not (self._console.is_terminal and self._console.is_interactive):
+        if not self._is_redrawn:
             if passed >= self._next_line_s:
                 self._next_line_s += min(self._next_line_s, _LONGEST_SILENCE_S)
                 self._say(describe())

@@ -18,7 +18,6 @@ from blocks_planning.cli.options import (
 )
 from blocks_planning.cli.progress import (
     LIMIT_REACHED,
-    QUIET_S,
     Job,
     Progress,
     each,
@@ -129,7 +128,7 @@ def _run_all(
         record = outcome.result
         if record is None:  # a trial always gives a record
             raise BlocksPlanningError(f'{outcome.name}: {outcome.problem}')
-        if len(specs) > 1 and outcome.took_s > QUIET_S:
+        if len(specs) > 1 and outcome.took_s > progress.patience_s:
             seconds = f'{outcome.took_s:,.1f} s'
             progress.say(
                 f'{outcome.name}: {record.status.value}, {record.blocks} blocks, {seconds}'

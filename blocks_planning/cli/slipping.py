@@ -11,7 +11,8 @@ import click
 
 from blocks_planning.board.task import Task
 from blocks_planning.cli.interrupt import interruptible
-from blocks_planning.cli.progress import bar
+from blocks_planning.cli.progress import LIMIT_REACHED, bar
+from blocks_planning.errors import LimitExceeded
 from blocks_planning.search.result import CancelToken, Problem
 from blocks_planning.search.searches import BreadthFirst
 from blocks_planning.search.slipping import SlipChances, analyse_slips
@@ -27,14 +28,17 @@ def print_slips(
     limit: int,
     as_json: bool,
 ) -> int:
-    """Print a row per tower and slip as soon as the tower is done, in the order of towers."""
+    """Print a row per tower and slip as soon as the tower is done, in the order of towers.
+
+    The row of a tower with too many states says so. Returns the exit code.
+    """
     search = BreadthFirst() if depth is None else BreadthFirst(depth)
 
     def analyse(task: Task, cancel: CancelToken) -> list[SlipChances] | None:
         return analyse_slips(Problem(task, 0, task.silhouette), slips, search, limit, cancel)
 
-    def work(cancel: CancelToken) -> bool:
-        """Analyse all towers, in threads: kernels run without the GIL. False if cancelled."""
+    def work(cancel: CancelToken) -> int:
+        """Analyse all towers, in threads: kernels run without the GIL. Returns the exit code."""
         workers = min(_MOST_AT_ONCE, os.cpu_count() or 1)
         with ThreadPoolExecutor(workers) as pool, bar('Towers') as report:
             waiting = [(name, pool.submit(analyse, task, cancel)) for name, task in tasks]
@@ -44,34 +48,42 @@ def print_slips(
                 cancel.cancel()
                 raise
 
-    finished, interrupted = interruptible(work)
-    if interrupted or not finished:
+    code, interrupted = interruptible(work)
+    if interrupted:
         raise KeyboardInterrupt
-    return 0
+    return code
 
 
 def _print_all(
     waiting: Sequence[tuple[str, Future[list[SlipChances] | None]]],
     as_json: bool,
     report: Callable[[int, int], None],
-) -> bool:
-    """Print the towers in order, each once it is known; False if cancelled."""
+) -> int:
+    """Print the towers in order, each once it is known, up to one that was cancelled."""
+    code = 0
     report(0, len(waiting))
     for done, (name, future) in enumerate(waiting, 1):
-        found = future.result()
-        if found is None:
-            return False
-        for chances in found:
-            click.echo(_row(name, chances, as_json))
+        try:
+            found = future.result()
+        except LimitExceeded as error:
+            code = LIMIT_REACHED
+            click.echo(_row(name, {'problem': str(error)}, str(error), as_json))
+        else:
+            if found is None:
+                return code
+            for chances in found:
+                click.echo(_row(name, vars(chances), _in_words(chances), as_json))
         report(done, len(waiting))
-    return True
+    return code
 
 
-def _row(name: str, chances: SlipChances, as_json: bool) -> str:
+def _row(name: str, values: dict[str, object], words: str, as_json: bool) -> str:
+    return json.dumps({'stimulus': name, **values}) if as_json else f'{name}: {words}'
+
+
+def _in_words(chances: SlipChances) -> str:
     """One tower at one slip."""
-    if as_json:
-        return json.dumps({'stimulus': name, **vars(chances)})
     return (
-        f'{name}: slip {chances.slip:g}: best possible {chances.optimum:.6g}, '
+        f'slip {chances.slip:g}: best possible {chances.optimum:.6g}, '
         f'bfs {chances.bfs:.6g}, random {chances.random:.6g} ({chances.states:,} states)'
     )

@@ -73,4 +73,4 @@ def _drawn(record: TrialRecord, placed: int, built: Mask) -> Iterator[Mask]:
 
 def _decided(decision: object) -> Iterator[Mask]:
     for subgoal in getattr(decision, 'subgoals', ())[:1]:
-        yield subgoal.region
+        yield subgoal.region.cells

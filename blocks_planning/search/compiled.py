@@ -241,7 +241,7 @@ def placements_of(problem: Problem, moves: list[int]) -> tuple[Placed, ...]:
     return tuple(placements)
 
 
-def count_states(
+def count_nodes(
     task: Task, depth: int, cancel: CancelToken, counts: np.ndarray | None = None
 ) -> list[int] | None:
     """Tree nodes at depths 1 to n, summed, for n = 1 to ``depth``; None if cancelled.

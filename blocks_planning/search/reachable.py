@@ -146,6 +146,6 @@ def _slots_for(size: int) -> int:
 def _too_large(problem: Problem, limit: int) -> LimitExceeded:
     board = problem.task.board
     return LimitExceeded(
-        f'exact-policy: more than the limit of {limit} states lead to this silhouette of '
-        f'{board.width} x {board.height} cells; raise --limit, or use a smaller silhouette'
+        f'more than the limit of {limit} states can be reached on this silhouette of '
+        f'{board.width} x {board.height} cells'
     )

@@ -202,8 +202,7 @@ def read_planners(listed: Located, make: Callable[[object, Mapping[str, Any]], A
             raise item.fail("missing key 'name'")
         name = entries.pop('name')
         name.check(partial(make, name.plain(), {}))
-        for key, value in entries.items():  # an unknown key is reported at its own line
-            value.check(partial(make, name.plain(), {key: _values(value)[0]}))
+        _check_each(entries, partial(make, name.plain()))
         ranges = [_values(value) for value in entries.values()]
         if prod(map(len, ranges)) > MAX_PLANNERS:
             raise item.fail(f'describes more than {MAX_PLANNERS} combinations of settings')
@@ -211,6 +210,19 @@ def read_planners(listed: Located, make: Callable[[object, Mapping[str, Any]], A
             values = dict(zip(entries, combination, strict=True))
             things.append(item.check(partial(make, name.plain(), values)))
     return things
+
+
+def _check_each(entries: Mapping[str, Located], make: Callable[[Mapping[str, Any]], Any]) -> None:
+    """Check the first value of every setting at its own line.
+
+    Words come first, because one of them (``regions``) can decide which other settings there are.
+    """
+    words: dict[str, Any] = {}
+    firsts = {key: _values(value)[0] for key, value in entries.items()}
+    for key in sorted(firsts, key=lambda key: not isinstance(firsts[key], str)):
+        entries[key].check(partial(make, {**words, key: firsts[key]}))
+        if isinstance(firsts[key], str):
+            words[key] = firsts[key]
 
 
 def _values(value: Located) -> list[Any]:

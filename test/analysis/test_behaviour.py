@@ -49,7 +49,7 @@ def test_share_is_over_all_builds_and_its_interval_over_builders() -> None:
 
 def test_share_of_builders_that_are_alike_is_certain() -> None:
     found = estimate_share(Tally([(name, Count(3, 4)) for name in 'abcdef']), rng())
-    assert tuple(found) == (0.75, 0.75, 0.75)
+    assert found[:3] == (0.75, 0.75, 0.75)
 
 
 def test_share_of_nothing_is_unknown() -> None:
@@ -60,7 +60,7 @@ def test_share_of_nothing_is_unknown() -> None:
 def test_gain_is_measured_on_what_chance_leaves() -> None:
     own = Tally([('a', Count(9, 10)), ('b', Count(9, 10))])
     chance = Tally([('a', Count(6, 10)), ('b', Count(6, 10))])
-    assert estimate_gain(own, chance, rng()) == pytest.approx((0.75, 0.75, 0.75))
+    assert estimate_gain(own, chance, rng())[:3] == pytest.approx((0.75, 0.75, 0.75))
     with pytest.raises(ValueError, match='the same builders'):
         estimate_gain(own, Tally([('a', Count(6, 10))]), rng())
 

@@ -38,7 +38,9 @@ def test_means_are_over_the_values_of_lambda_that_all_have() -> None:
         scoping(0.008, 'action', 'worst', 7),
     ]
     words = ('stimulus', 'strategy', 'search', 'commit', 'dead_ends', 'divisor', 'execute')
-    found = switch_rows(pd.DataFrame(rows).astype(dict.fromkeys(words, 'category')))
+    found = switch_rows(
+        pd.DataFrame(rows).astype({**dict.fromkeys(words, 'category'), 'success': bool})
+    )
     assert [(row['settings'], row['commit'], row['lambdas']) for row in found] == [
         ('published', 'subgoal', 2),
         ('published', 'action', 2),

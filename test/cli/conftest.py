@@ -11,5 +11,5 @@ from blocks_planning.cli import progress
 
 @pytest.fixture(autouse=True)
 def _no_lines_on_progress(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    if request.module.__name__ != 'test_progress':
+    if request.path.name != 'test_progress.py':
         monkeypatch.setattr(progress, 'FIRST_LINE_S', inf)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from blocks_planning.cli import main
-from blocks_planning.search import compiled, exact
+from blocks_planning.search import exact, memory
 
 LARGE = '\n'.join(['#' * 16] * 16)
 TOWERS = f'tower large\n{LARGE}\n\ntower small\n####\n'
@@ -81,8 +81,8 @@ def test_solve_reports_a_trial_that_the_time_limit_ended(command: Command) -> No
 def test_solve_reports_a_search_that_outgrew_its_memory(
     command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(compiled, 'MAX_NODES', 1 << 10)
-    monkeypatch.setattr(compiled, '_NODES_PER_ITERATION', 1)
+    monkeypatch.setattr(memory, 'MAX_NODES', 1 << 10)
+    monkeypatch.setattr(memory, '_NODES_PER_ITERATION', 1)
     words = ('--strategy', 'none', '--search', 'astar', '--iterations', '1000')
     code, rows, err = command('solve', 'towers.txt/large', '--json', *words)
     assert (code, json.loads(rows[0])['status']) == (3, 'gave_up')

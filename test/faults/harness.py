@@ -106,8 +106,11 @@ class Harness:
         begun, progress = time.monotonic(), self._observer.progress
         subject.start()
         try:
-            self._spin(lambda: self._observer.progress > progress, RECOVERY_BOUND_S)
-            self._start_s = time.monotonic() - begun
+            # A script can be over before a node has started again; a kill while nodes start that
+            # did not come in time comes while they start for the next script.
+            if self._next is None or self._next.phase != 'starting':
+                self._spin(lambda: self._observer.progress > progress, RECOVERY_BOUND_S)
+                self._start_s = time.monotonic() - begun
             while self._next is not None:
                 self._do(self._next)
                 self._next = next(self._plan, None)

@@ -10,7 +10,7 @@ import yaml
 
 from blocks_planning.board.stimuli import find_stimuli
 from blocks_planning.board.task import Task
-from blocks_planning.search.compiled import count_states
+from blocks_planning.search.compiled import count_nodes
 from blocks_planning.search.exact import analyse
 from blocks_planning.search.result import CancelToken
 from blocks_planning.search.searches import BreadthFirst
@@ -31,7 +31,7 @@ def tower(number: int) -> Task:
 
 @pytest.mark.parametrize('number', GOLDEN)
 def test_states_evaluated_by_depth(number: int) -> None:
-    assert count_states(tower(number), 4, CancelToken()) == GOLDEN[number]['counts']
+    assert count_nodes(tower(number), 4, CancelToken()) == GOLDEN[number]['counts']
 
 
 @pytest.mark.parametrize('number', GOLDEN)

@@ -30,7 +30,7 @@ def test_blocks_on_the_grid_need_no_remark() -> None:
 
 
 def test_small_errors_are_rounded_away_and_larger_ones_said() -> None:
-    assert fit(BOARD, [seen(0, Block(2, 1), 2.2, 0.6)], 0.25).warnings == ()
+    assert fit(BOARD, [seen(0, Block(2, 1), 2.1, 0.6)], 0.25).warnings == ()
     state = fit(BOARD, [seen(0, Block(2, 1), 2.3, 0.5)], 0.25)
     assert state.placed == (Placed(2, 1, 1, 0),)
     assert kinds(state) == [(0, Misfit.DISPLACED)]

@@ -110,6 +110,16 @@ def test_trial_there_and_back(trial: TrialSpec) -> None:
     assert TRIAL.from_ros(None, sent(TRIAL.to_ros(None, started))) == started
 
 
+def test_trial_can_be_changed_before_it_is_sent() -> None:
+    """Other messages of the same cells and blocks stay what they are."""
+    trial = TrialSpec(
+        'x', spec(ARCH).task, NoSubgoals(), make_search('bfs', {}), built=(Placed(2, 1, 0, 0),)
+    )
+    message = spec_to_ros('', trial)
+    message.silhouette.width = message.library[0].width = message.built[0].block.width = 0
+    assert spec_from_ros(spec_to_ros('', trial)) == trial
+
+
 def test_blocks_that_stand_at_the_beginning_there_and_back() -> None:
     built = (Placed(2, 1, 0, 0), Placed(1, 2, 0, 1))
     trial = TrialSpec('x', spec(ARCH).task, NoSubgoals(), make_search('bfs', {}), built=built)
@@ -133,9 +143,10 @@ def test_settings_of_a_strategy_that_is_added_travel_with_their_types() -> None:
         timid = STRATEGIES.make('timid', {'brave': False, 'steps': 7, 'fear': 2.5, 'word': 'hm'})
         trial = TrialSpec('x', spec(ARCH).task, timid, make_search('bfs', {}))
         message = sent(spec_to_ros('', trial))
-        assert [s.type for s in message.planner.strategy_settings] == [1, 2, 3, 4]
+        kinds = {each.name: each.type for each in message.planner.strategy_settings}
+        assert [kinds[name] for name in ('brave', 'steps', 'fear', 'word')] == [1, 2, 3, 4]
         assert spec_from_ros(message) == trial
-        del message.planner.strategy_settings[1]  # what is left out keeps its default
+        del message.planner.strategy_settings[list(kinds).index('steps')]  # it keeps its default
         assert spec_from_ros(message).strategy == Timid(brave=False, steps=3, fear=2.5, word='hm')
     assert issubclass(Timid, Configured)
 

@@ -26,6 +26,7 @@ from blocks_planning.ros.runtime.processes import (
     tell_ready,
 )
 from blocks_planning.ros.wire.graph import ACTION_SEARCHER
+from blocks_planning.search import warming
 from blocks_planning.subgoals.decision import Query
 from blocks_planning.trials.messages import SearchAnswer, SearchRequest, TrialStarted
 
@@ -205,9 +206,16 @@ def test_node_joins_before_its_searches_are_compiled(
 ) -> None:
     """It says so, and is waited for."""
     may_end = threading.Event()
-    monkeypatch.setattr(action_searcher, 'warm_up', may_end.wait)
+    begun = threading.Event()
+
+    def compile_for(*_: object) -> None:
+        begun.set()
+        may_end.wait()
+
+    monkeypatch.setattr(warming, 'compile_for', compile_for)
     node = graph.add(action_searcher.ActionSearcher)
-    node.compile()
+    node.prepare(SPEC.search, SPEC.task.board)
+    graph.spin_until(begun.is_set)
     on = Bench(graph, ACTION_SEARCHER, node, SPEC)
     assert node.health().state == 'compiling'
     started = TrialStarted(SPEC.trial_id, SPEC)
@@ -216,4 +224,4 @@ def test_node_joins_before_its_searches_are_compiled(
     may_end.set()
     assert on.hear(1, SearchAnswer)[0].query == Query(0, SPEC.task.rows(2))
     assert node.health().state == 'building'
-    assert 'compiling the searches' in capfd.readouterr().err
+    assert 'compiling bfs' in capfd.readouterr().err

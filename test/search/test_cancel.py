@@ -12,7 +12,7 @@ import pytest
 
 from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
-from blocks_planning.search.compiled import count_states
+from blocks_planning.search.compiled import count_nodes
 from blocks_planning.search.exact import analyse
 from blocks_planning.search.result import (
     MAX_BUDGET,
@@ -140,11 +140,11 @@ def test_analysis_is_cancelled() -> None:
 
 @pytest.mark.parametrize('task', [SMALL, LARGE], ids=['8x8', '16x16'])
 def test_counting_is_cancelled(task: Task) -> None:
-    assert count_states(task, 2, CancelToken()) is not None
+    assert count_nodes(task, 2, CancelToken()) is not None
 
     def work(cancel: CancelToken, begun: threading.Event) -> list[int] | None:
         begun.set()
-        return count_states(task, 20, cancel)
+        return count_nodes(task, 20, cancel)
 
     assert cancelled(work) is None
 
@@ -159,7 +159,7 @@ def test_solve_that_is_cancelled_before_it_begins_ends_at_once(name: str) -> Non
         result = solve(problem, search, seed=1, budget=MAX_BUDGET, cancel=cancel)
         assert result.status is SolveStatus.CANCELLED
         assert result.placements == ()
-    assert count_states(LARGE, 20, cancel) is None
+    assert count_nodes(LARGE, 20, cancel) is None
     assert analyse(LARGE, cancel) is None
 
 

@@ -13,7 +13,7 @@ from problems import random_problem
 from blocks_planning.board.blocks import Block
 from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
-from blocks_planning.search.compiled import count_states
+from blocks_planning.search.compiled import count_nodes
 from blocks_planning.search.result import CancelToken
 from blocks_planning.search.searches import SEARCHES, make_search
 from blocks_planning.search.solve import solve
@@ -102,7 +102,7 @@ def test_counts_are_those_of_the_slow_twin() -> None:
         region = frozenset(task.board.cells(task.silhouette))
         twin = oracle_search.Task(task.board.width, task.board.height, library, region)
         expected = [oracle_search.count_tree(twin, frozenset(), depth) for depth in (1, 2, 3)]
-        assert count_states(task, 3, CancelToken()) == expected
+        assert count_nodes(task, 3, CancelToken()) == expected
 
 
 def test_counts_by_hand() -> None:
@@ -113,10 +113,10 @@ def test_counts_by_hand() -> None:
     """
     board = Board(3, 3)
     task = Task(board, board.full, (Block(1, 1),))
-    assert count_states(task, 4, CancelToken()) == [3, 12, 39, 117]
+    assert count_nodes(task, 4, CancelToken()) == [3, 12, 39, 117]
 
 
 def test_counting_goes_on_past_complete_states() -> None:
     """A 2 x 1 board and 1 x 1 blocks: 2 children, then 1 each, and then nothing."""
     task = Task(Board(2, 1), 0b11, (Block(1, 1),))
-    assert count_states(task, 5, CancelToken()) == [2, 4, 4, 4, 4]
+    assert count_nodes(task, 5, CancelToken()) == [2, 4, 4, 4, 4]

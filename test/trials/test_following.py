@@ -57,7 +57,7 @@ def test_record_is_that_of_the_parts(task: Task, search: object, seed: int, budg
         assert follow(spec, answers).to_json() == run_trial(spec).to_json()
 
 
-@pytest.mark.parametrize('tower', ['3', '7', '12'])
+@pytest.mark.parametrize('tower', ['12', '13'])
 @pytest.mark.parametrize('search', [BreadthFirst(2), AStar(256)])
 def test_record_of_a_tower_of_the_paper(tower: str, search: object) -> None:
     [stimulus] = find_stimuli(f'cogsci2021/{tower}')

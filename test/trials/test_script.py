@@ -17,6 +17,8 @@ from blocks_planning.board.stimuli import find_stimuli
 from blocks_planning.errors import ConfigurationError, RecordError
 from blocks_planning.search.result import DEFAULT_BUDGET
 from blocks_planning.subgoals.human import Human
+from blocks_planning.subgoals.regions import Rectangles
+from blocks_planning.subgoals.scoping import Scoping
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.recordfile import RecordFile
@@ -53,6 +55,16 @@ def test_least_that_a_script_says(tmp_path: Path) -> None:
     )
     assert (trial.task.board, trial.task.silhouette) == (stimulus.board, stimulus.silhouette)
     assert trial.task.library == PAPER_LIBRARY
+
+
+@pytest.mark.parametrize(
+    'settings', ['regions: rectangles, min_cells: 4', 'min_cells: 4, regions: rectangles']
+)
+def test_setting_of_a_region_family_is_one_of_the_strategy(tmp_path: Path, settings: str) -> None:
+    (trial,) = read(tmp_path, GOOD.replace('lambda: 0.002', settings))
+    assert trial.strategy == Scoping(regions=Rectangles(min_cells=4))
+    with pytest.raises(ConfigurationError, match=r"line 6, key 'min_cells': min_cells must be"):
+        read(tmp_path, GOOD.replace('lambda: 0.002', settings.replace('4', '0')))
 
 
 def test_order_is_strategies_searches_stimuli_seeds(tmp_path: Path) -> None:

@@ -14,8 +14,9 @@ from blocks_planning.trials.record import TrialRecord
 with extra('experiments'):
     import pandas as pd
 
-NAMED_BY = ('search', 'strategy', 'regions', 'horizon')
-"""Columns of the table of trials that distinguish planners, if present."""
+NAMED_BY = ('search', 'strategy')
+AND_BY = ('regions', 'horizon')
+"""Columns of the table of trials that tell planners apart; the latter if they have several values."""
 
 
 def builds_of_records(records: Iterable[TrialRecord]) -> list[Build]:
@@ -47,9 +48,9 @@ def builds_of_sweep(
     """
     trials = planners_of(read_trials(folder), preset)
     trials = trials[trials['stimulus'].isin([f'{SET}/{tower}' for tower in towers])]
-    named_by = [name for name in NAMED_BY if name in trials]
+    named_by = [*NAMED_BY, *(name for name in AND_BY if _differs(trials, name))]
     groups = {
-        ' '.join(map(str, key)): _at_middle_lambda(part)
+        ' '.join(f'{value}' for value in key if not pd.isna(value)): _at_middle_lambda(part)
         for key, part in trials.groupby(named_by, observed=True, dropna=False, sort=False)
     }
     wanted = pd.concat([part['trial_id'] for part in groups.values()]) if groups else []
@@ -62,6 +63,10 @@ def builds_of_sweep(
         ]
         for name, part in groups.items()
     }
+
+
+def _differs(trials: pd.DataFrame, name: str) -> bool:
+    return name in trials and trials[name].nunique() > 1
 
 
 def _at_middle_lambda(trials: pd.DataFrame) -> pd.DataFrame:

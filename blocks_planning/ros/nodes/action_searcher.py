@@ -1,8 +1,8 @@
 """Node ``action_searcher``: plans how to fill a region, and orders the placements.
 
 Searches run in worker threads, so that the node stays responsive; they stop as soon as their trial
-is over. The kernels of the searches are compiled in such a thread too, after the node has joined
-the graph; searches wait for it.
+is over. The kernels of a search are compiled in such a thread too, before it is first run: those of
+the default search when the node starts.
 
 | | |
 |---|---|
@@ -14,12 +14,12 @@ the graph; searches wait for it.
 from __future__ import annotations
 
 import threading
-import time
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any, TypeAlias
 
+from blocks_planning.board.geometry import Board
 from blocks_planning.ros.runtime.diagnostics import Health
 from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import PartNode
@@ -27,7 +27,8 @@ from blocks_planning.ros.runtime.process import run
 from blocks_planning.ros.wire.graph import ACTION_SEARCHER
 from blocks_planning.search.many import solve_many
 from blocks_planning.search.result import CancelToken, Problem, SolveResult, SolveStatus
-from blocks_planning.search.warming import warm_up
+from blocks_planning.search.searches import BreadthFirst, Search
+from blocks_planning.search.warming import Kernels
 from blocks_planning.trials import searcher
 from blocks_planning.trials.messages import (
     Message,
@@ -53,25 +54,22 @@ class ActionSearcher(PartNode):
         super().__init__(ACTION_SEARCHER, searcher, (WORKERS,), **options)
         self._cancel = CancelToken()
         self._threads = ThreadPoolExecutor(self.values['workers'], 'search')
-        self.is_compiling = False
-        self._may_search = threading.Event()
-        self._may_search.set()
+        self._kernels = Kernels(self.get_logger().info)
         self._waiting: deque[_Question] = deque()
         self._answers: deque[SearchAnswer | BaseException] = deque()
         self._counting = threading.Lock()
         self._running = 0
         self._evaluated = 0
 
-    def compile(self) -> None:
-        """Compile the kernels of the searches, in a thread; searches wait for it."""
-        self.is_compiling = True
-        self._may_search.clear()
-        threading.Thread(target=self._compile, name='compile', daemon=True).start()
+    def prepare(self, search: Search, board: Board) -> None:
+        """Compile the kernels of a search in a thread; it is not run before."""
+        self._threads.submit(self._prepare, search, board)
 
     def begin(self, trial: TrialStarted) -> None:
         """Begin a trial: cancel the searches of other trials."""
         if self.trial is None or self.trial.trial_id != trial.trial_id:
             self._stop_searching()
+            self.prepare(trial.spec.search, trial.spec.task.board)
         super().begin(trial)
 
     def take(self, message: Message) -> None:
@@ -90,7 +88,7 @@ class ActionSearcher(PartNode):
     def health(self) -> Health:
         """See :class:`PartNode`; the state is ``compiling`` until searches can be run."""
         health = super().health()
-        return replace(health, state='compiling') if self.is_compiling else health
+        return replace(health, state='compiling') if self._kernels.compiling else health
 
     def load(self) -> dict[str, object]:
         """See :class:`PartNode`; counts of the searches of the trial."""
@@ -102,22 +100,15 @@ class ActionSearcher(PartNode):
             'states_evaluated': self._evaluated,
         }
 
-    def _compile(self) -> None:
-        begun_s = time.monotonic()
-        self.get_logger().info('compiling the searches; this takes a while after the first start')
+    def _prepare(self, search: Search, board: Board) -> None:
         try:
-            warm_up()
+            self._kernels.prepare(search, board)
         except BaseException as error:  # noqa: BLE001  raised again in the node's own thread
             self._answers.append(error)
-        else:
-            self.get_logger().info(f'compiled in {time.monotonic() - begun_s:.1f} s')
-        self.is_compiling = False
-        self._may_search.set()
-        self.call_soon(self._deliver)
+            self.call_soon(self._deliver)
 
     def _search_some(self) -> None:
-        """Take waiting questions of one trial, and solve them in one call."""
-        self._may_search.wait()
+        """Take questions of a trial from those that wait, and solve them in one call."""
         questions = self._take_questions()
         if not questions:
             return
@@ -133,6 +124,7 @@ class ActionSearcher(PartNode):
                 self.call_soon(self._deliver)
 
         try:
+            self._kernels.prepare(spec.search, spec.task.board)
             solve_many(problems, spec.search, spec.seed, spec.budget, cancel, done, workers=1)
         except BaseException as error:  # noqa: BLE001  raised again in the node's own thread
             self._answers.append(error)
@@ -176,7 +168,7 @@ def main() -> None:
 
     def make_node(_: threading.Event) -> ActionSearcher:
         node = ActionSearcher()
-        node.compile()
+        node.prepare(BreadthFirst(), Board(8, 8))  # most trials have this search
         return node
 
     run(make_node)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from typing import Any
 
 from blocks_planning_msgs import msg as ros
@@ -33,13 +34,13 @@ MOST_REASON = 300
 
 
 def spec_to_ros(trial_id: str, spec: TrialSpec) -> ros.TrialSpec:
-    """A trial, for an announcement or a goal."""
+    """A trial, for an announcement or a goal. A client may change the message before sending."""
     return ros.TrialSpec(
         trial_id=trial_id,
         stimulus=spec.stimulus,
-        silhouette=grid_to_ros(spec.task.board, spec.task.silhouette),
-        library=[block_to_ros(block) for block in spec.task.library],
-        built=blocks_to_ros(spec.built),
+        silhouette=deepcopy(grid_to_ros(spec.task.board, spec.task.silhouette)),
+        library=deepcopy([block_to_ros(block) for block in spec.task.library]),
+        built=deepcopy(blocks_to_ros(spec.built)),
         planner=planner_to_ros(spec),
         seed=spec.seed,
     )
