@@ -98,7 +98,7 @@ def test_options_of_the_command_line_and_their_help() -> None:
 
     text = ' '.join(CliRunner().invoke(command, ['--help']).output.split())
     for part in (
-        '--courage INTEGER How bold it is. [bold 3]',
+        '--courage INTEGER How bold it is. [default: 3 for bold]',
         '--mood [calm|cross]',
         '--loud BOOL',
     ):

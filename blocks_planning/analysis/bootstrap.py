@@ -122,7 +122,7 @@ def pearson(x: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 
 def mean_of_present(values: np.ndarray) -> np.ndarray:
-    """Means over the last axis of what is not nan; nan where there is nothing else."""
+    """Means over the last axis, without nan; nan if there are only nan values."""
     present = ~np.isnan(values)
     with np.errstate(invalid='ignore'):
         means: np.ndarray = np.where(present, values, 0.0).sum(axis=-1) / present.sum(axis=-1)

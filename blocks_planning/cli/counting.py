@@ -88,11 +88,12 @@ class _Counts:
 def exact(
     addresses: tuple[str, ...], time_limit_s: float | None, library: str, as_json: bool
 ) -> int:
-    """Find the fewest blocks and the number of arrangements, or prove that there are none.
+    """Find the fewest blocks and count the arrangements.
 
-    The second number of arrangements counts those with the fewest blocks. If a tower needs more
-    than 20 million states (about 1 GB of memory), or more time than the limit, its row reports
-    that, and the exit code is 3.
+    If a tower cannot be built from the blocks, the command proves that. The second number of
+    arrangements counts those with the fewest blocks. If a tower needs more than 20 million states
+    (about 1 GB of memory), or more time than the limit, its row reports that, and the exit code is
+    3.
     """
     stimuli = find_all(addresses)
     jobs = [_exact_job(stimulus.name, task_of(stimulus, library)) for stimulus in stimuli]

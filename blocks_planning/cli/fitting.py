@@ -42,11 +42,11 @@ DEFAULT_MODELS = (
     '--intervals/--no-intervals', default=True, help='Compute profile-likelihood intervals.'
 )
 def fit(records: tuple[Path, ...], out: Path, names: tuple[str, ...], intervals: bool) -> None:
-    """Fit models of choice to the regions that people or planners chose.
+    """Fit models of choice to the chosen regions of records.
 
-    The command fits each session of the RECORDS (a participant, or the seed of a planner)
-    separately, and all sessions together. It writes fits.csv, parameters.csv, choices.csv and
-    figures/fit.svg and .png.
+    The choices are those of people or planners. The command fits each session of the RECORDS (a
+    participant, or the seed of a planner) separately, and all sessions together. It writes
+    fits.csv, parameters.csv, choices.csv and figures/fit.svg and .png.
     """
     from blocks_planning.analysis.fitted import fit_figure
     from blocks_planning.analysis.style import save_figure

@@ -101,7 +101,7 @@ def run(
     markers: bool,
     pictures: bool | None,
 ) -> int:
-    """Start the ROS graph and run the trials of a script through it.
+    """Run the trials of a script through the ROS graph.
 
     The command writes records to trials.jsonl in the folder --out, and pictures of trials to its
     subfolder pictures. Trials that have a record there are not run again. The exit code is 1 if a

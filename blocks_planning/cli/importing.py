@@ -60,7 +60,7 @@ def import_towers(
     meaning: str | None,
     trim: bool,
 ) -> None:
-    """Read towers from JSON, CSV or text files and write them as text pictures.
+    """Convert towers from JSON, CSV or text to text pictures.
 
     A JSON file contains block lists, {"blocks": [{"x": 0, "y": 0, "width": 2, "height": 1}]} with y
     upwards, or grids, [[0, 1], [1, 1]] with the top row first, or lists or objects of them. A grid

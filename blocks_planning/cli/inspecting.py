@@ -23,7 +23,7 @@ _RECORD = click.Path(path_type=Path, exists=False)
 @click.argument('paths', metavar='RECORD...', type=_RECORD, nargs=-1, required=True)
 @click.option('--rerun', is_flag=True, help='Also run every trial again and compare.')
 def verify(paths: tuple[Path, ...], rerun: bool) -> int:
-    """Replay the placements of records through the rules, and recompute their decisions.
+    """Check records: replay placements and recompute decisions.
 
     A RECORD is a file of records, or a bag. The trials of a bag are rebuilt from its messages
     alone, and compared with their recorded outcomes. A truncated bag is repaired first.
@@ -112,7 +112,10 @@ def _import_bags(path: Path) -> ModuleType:
     '--record', 'number', type=click.IntRange(1), help='Number of the record or trial, from 1.'
 )
 def draw(path: Path, out: Path, number: int | None) -> None:
-    """Draw the tower of a record, or of a trial in a bag; a .gif shows it block by block."""
+    """Draw the tower of a record or of a trial in a bag.
+
+    A .gif file shows the tower block by block.
+    """
     from blocks_planning.view.picture import save_picture
 
     if _is_bag(path):

@@ -91,10 +91,11 @@ def make_command(
     tries: int,
     library: str,
 ) -> None:
-    """Generate random towers with wanted properties and write them as text pictures.
+    """Generate random towers with wanted properties.
 
-    A comment above every tower lists its measures. The same options give the same towers. With
-    --sets, each set has its own file: NAME-1.txt, NAME-2.txt, ...
+    The towers are written as text pictures. A comment above every tower lists its measures. The
+    same options give the same towers. With --sets, each set has its own file: NAME-1.txt,
+    NAME-2.txt, ...
 
     Measures: cells, width, height, holes, hole_cells, overhangs, covered_cells, roughness; blocks,
     arrangements, optimal (exact); cost [states], success (of a planner).

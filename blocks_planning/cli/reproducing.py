@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 @click.option('--quick', is_flag=True, help='Use few seeds and values of lambda; takes seconds.')
 @workers_option
 def reproduce(out: Path, quick: bool, workers: int | None) -> int:
-    """Run every experiment of the paper and write report.html and results.json.
+    """Run every experiment of the paper and write a report.
 
-    Figures and tables of all trials are written beside them. After an interruption, the same
-    command continues. The exit code is 1 if a trial could not be run.
+    The command writes report.html, results.json, figures, and the tables of all trials. After an
+    interruption, the same command continues. The exit code is 1 if a trial could not be run.
     """
     from blocks_planning.analysis.comparing import count_verdicts
     from blocks_planning.analysis.report import write_report
@@ -95,10 +95,10 @@ _QUICK = (
 )
 @workers_option
 def growth(out: Path, towers: int, seeds: int, largest: int, workers: int | None) -> int:
-    """Measure how the states evaluated grow with the board, on generated towers.
+    """Measure how planning costs grow with the board.
 
-    The command writes growth.json with fits, figures/growth.svg and .png, and the tables of all
-    trials.
+    The towers are generated. The command writes growth.json with fits, figures/growth.svg and .png,
+    and the tables of all trials.
     """
     from blocks_planning.analysis.growth import (
         LEAST_SIDES,
@@ -190,7 +190,7 @@ def exact_policy(
     library: str,
     as_json: bool,
 ) -> int:
-    """Compute the success and cost of bfs or random on a tower, without sampling.
+    """Compute success and cost of bfs or random without sampling.
 
     The output has the success and expected cost of one attempt, and the success of repeated
     attempts within the budget. If a tower needs more states than the limit, or more memory (640 MB

@@ -64,10 +64,10 @@ def solve(
     as_json: bool,
     **options: Any,
 ) -> int:
-    """Run trials and print a table, or one record per line with --json.
+    """Run trials and print a table or their records.
 
-    The exit code is 1 if a tower was not rebuilt perfectly, and 3 if the time limit ended a trial
-    or a search exceeded its memory (1 GB).
+    With --json, each line is the record of a trial. The exit code is 1 if a tower was not rebuilt
+    perfectly, and 3 if the time limit ended a trial or a search exceeded its memory (1 GB).
     """
     specs = specs_of(addresses, seeds, options)
     records = []

@@ -34,10 +34,10 @@ workers_option = click.option(
 @workers_option
 @click.option('--dask', metavar='ADDRESS', help='Use the workers of this Dask scheduler instead.')
 def sweep(spec: str, out: Path, workers: int | None, dask: str | None) -> int:
-    """Run all trials of a specification and write tables of them as Parquet files.
+    """Run all trials of a specification and write tables.
 
-    After an interruption, the same command continues. The exit code is 1 if a trial could not be
-    run; its row in the table of trials has the reason.
+    The tables are Parquet files. After an interruption, the same command continues. The exit code
+    is 1 if a trial could not be run; its row in the table of trials has the reason.
     """
     from blocks_planning.experiments.reading import find_sweep, read_sweep
     from blocks_planning.experiments.running import default_workers

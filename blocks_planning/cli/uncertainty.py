@@ -25,7 +25,7 @@ _QUICK = 'This is a quick run with few seeds and worlds. It only shows that ever
 )
 @workers_option
 def uncertain(out: Path, quick: bool, first_seed: int, workers: int | None) -> int:
-    """Measure planners in worlds where blocks slip, are lost, or fall.
+    """Measure planners in worlds where blocks slip or fall.
 
     The command writes report.html and results.json, with the best possible policy for comparison.
     After an interruption, the same command continues. The exit code is 1 if a trial could not be

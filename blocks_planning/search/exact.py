@@ -3,9 +3,9 @@
 The order of placing need not be searched. A set of placed rectangles can be built in some order if
 and only if it tiles the region and every rectangle rests on the ground or on at least one filled
 cell: placed by rising bottom row, each comes to rest in its place. So the problem is a minimum
-    exact cover, and a dynamic program that always fills the first empty cell, row by row from the
-    left, solves it. At the end of row k, the state in which exactly rows(k) is filled gives the
-    answer for the region rows(k).
+exact cover, and a dynamic program that always fills the first empty cell, row by row from the left,
+solves it. At the end of row k, the state in which exactly rows(k) is filled gives the answer for
+the region rows(k).
 """
 
 from __future__ import annotations

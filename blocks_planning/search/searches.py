@@ -111,7 +111,7 @@ class BreadthFirst(Compiled):
 def _iterations() -> Any:
     return setting(
         4096,
-        'Number of nodes taken from the queue in one search.',
+        'Number of iterations of one search (nodes taken from the queue).',
         least=2,
         most=MAX_ITERATIONS,
         unit='nodes',
@@ -185,7 +185,7 @@ class Beam(Compiled):
     some uniformly drawn ones. Two orders of the same blocks are two states. It stops after a level
     with a complete state, or if no state kept has a legal placement. The result is the path to the
     kept state with most filled cells of all levels, uniformly among equals, and is executed whole;
-    if that is not complete, nothing legal is left in it.
+    if it is not complete, no legal placement is left in it.
 
     Draws: on each level where not all equals can be kept, one draw for each of them in the order of
     generation, until no place is left: it is kept if a number drawn below the number of equals
@@ -208,18 +208,18 @@ class Beam(Compiled):
 class TreeSearch(Compiled):
     """Monte Carlo tree search with upper confidence bounds (UCT; Kocsis and Szepesvari, 2006).
 
-    Each iteration walks from the root down the tree. At a state of which some legal placement is
-    not in the tree, it adds one of those, uniformly drawn, and from the state that follows it
-    places legal blocks, uniformly, until nothing legal is left. At a state of which all are in the
-    tree, it goes to the child with the highest W / n + exploration * sqrt(ln N / n), uniformly
+    Each iteration walks from the root down the tree. At a state with legal placements that are not
+    in the tree, it adds a uniformly drawn one of these, and from the new state it makes uniformly
+    drawn legal placements until none is left. At a state with all legal placements in the tree, it
+    goes to the child with the highest W / n + exploration * sqrt(ln N / n), uniformly
     among equals: W is the sum of the rewards of the child's n visits, and N the number of visits
     of the state. At a state without a legal placement the iteration ends. The reward is the share
-    of the region's cells that is filled at its end, 1 if complete, and counts for every state on
-    its way in the tree.
+    of the region's cells that is filled at its end, 1 if complete, and counts for every state of
+    the tree on the walk.
 
     After all iterations the most visited first placement is executed, uniformly among equals, and
-    a new search begins, with a new tree. A complete state does not end a search: it is one more
-    reward. So an attempt makes one search for every block it places.
+    a new search begins, with a new tree. A complete state does not end a search: it only gives a
+    reward of 1. So an attempt makes one search for every block it places.
 
     States evaluated are those added to the tree and those of the placements that follow, in every
     iteration. Draws: one for each choice named above, even if there is only one option.
@@ -228,7 +228,7 @@ class TreeSearch(Compiled):
     name: ClassVar[str] = 'mcts'
     iterations: int = setting(
         1000,
-        'Number of walks through the tree before each placement.',
+        'Number of iterations of one search (walks through the tree).',
         least=1,
         most=MAX_ITERATIONS,
         unit='iterations',

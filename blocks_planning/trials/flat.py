@@ -69,8 +69,11 @@ class FlatSetting:
 
     @property
     def defaults(self) -> str:
-        """Each member's default, such as 'scoping 0.002, full 1.0'."""
-        return ', '.join(f'{name} {one.default}' for name, one in self.members.items())
+        """The defaults with their members, such as '0.002 for scoping, 1.0 for full'."""
+        users: dict[str, list[str]] = {}
+        for name, one in self.members.items():
+            users.setdefault(str(one.default), []).append(name)
+        return ', '.join(f'{value} for {"/".join(names)}' for value, names in users.items())
 
 
 def flat_settings(wanted: Callable[[type[Any]], bool] | None = None) -> list[FlatSetting]:

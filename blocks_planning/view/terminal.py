@@ -27,7 +27,7 @@ GAP = 3
 PANEL_LINES = 8
 """Number of lines of the panel without a decision, if no setting needs an extra line."""
 ROOM = 2
-"""Lines below the frame for the cursor and for what is printed next."""
+"""Lines below the frame for the cursor and the next output."""
 PATIENCE_S = 0.02
 """Period at which a pause checks whether the trial was cancelled [s]."""
 

@@ -116,7 +116,9 @@ class Simulated(Configured):
         'glued', 'Whether blocks stay where they land (glued) or can fall (loose).', choices=BLOCKS
     )
     edge: str = setting(
-        'stands', 'What a tower of loose blocks at the limit of stability does.', choices=EDGES
+        'stands',
+        'Whether a tower of loose blocks at the limit of stability stands or falls.',
+        choices=EDGES,
     )
 
     @property

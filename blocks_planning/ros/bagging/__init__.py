@@ -1,8 +1,8 @@
-"""Bags on disk: rosbag2 directories of MCAP files, as ROS 2 Jazzy reads them; no node in here.
+"""Bags on disk: rosbag2 directories of MCAP files, as ROS 2 Jazzy reads them.
 
 ::
 
-    bag/metadata.yaml     what is in the files; written when the recording ends, or by a repair
+    bag/metadata.yaml     content of the files; written when the recording ends, or by a repair
         bag_0.mcap        messages in chunks, each on disk when :meth:`.writer.BagWriter.flush`
         bag_1.mcap        returns; an index at the end
         bag_1.mcap.torn   the end of a truncated file, moved here by a repair

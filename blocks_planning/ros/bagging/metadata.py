@@ -109,7 +109,7 @@ def from_yaml(text: str) -> Any:
 
 
 def to_yaml(content: object) -> str:
-    """YAML in blocks, in the order given."""
+    """YAML in block style, in the given order."""
     text: str = yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
     return text
 
@@ -130,7 +130,7 @@ def write_metadata(directory: Path, files: Sequence[FileSummary]) -> None:
 
 
 def listed_files(directory: Path) -> Iterable[str] | None:
-    """The files that ``metadata.yaml`` lists; None if there is none that can be read."""
+    """The files that ``metadata.yaml`` lists; None if the file is missing or invalid."""
     try:
         content = from_yaml((directory / METADATA).read_text(encoding='utf-8'))
         names = content['rosbag2_bagfile_information']['relative_file_paths']

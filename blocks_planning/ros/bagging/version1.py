@@ -46,7 +46,7 @@ _FIELDS = {
 }
 """The field of each setting in version 1."""
 _STATUSES = ('success', 'stuck', 'gave_up', 'cancelled')
-"""How a trial could end; their codes now are 1 to 4."""
+"""Ends of a trial in version 1; their current codes are 1 to 4."""
 _BY_USER = 'the trial was cancelled'
 """The reason of an outcome if a user cancelled the trial."""
 _NEW_FIELDS = {
@@ -69,7 +69,7 @@ def upgraded(kind: str, message: Any, spec: TrialSpec | None) -> Any:
 
     Args:
         kind: name of its type.
-        message: as it was read.
+        message: the decoded message.
         spec: of its trial; None for the message that announces it.
 
     Raises:
@@ -93,7 +93,7 @@ def _spec(message: Any, _: TrialSpec | None) -> Any:
 
 
 def _settings(registry: Registry, name: str, config: Any) -> list[ros.Setting]:
-    """The settings of a member that version 1 knew; an unknown member has none."""
+    """The settings of a member in version 1; none for an unknown member."""
     known = setting_names(registry[name]) if name in registry else []
     values = {key: getattr(config, field) for key, field in _FIELDS.items() if key in known}
     different = {key: value for key, value in DIFFERENT_NOW.items() if key in known}
@@ -170,7 +170,7 @@ def _decision(spec: TrialSpec, message: Any, proposals: tuple[Proposal, ...], fi
 def _chains(
     spec: TrialSpec, message: Any, drawn: list[Region], field: str
 ) -> Iterator[list[Region]]:
-    """The regions of each candidate: rows below heights, or what a person drew."""
+    """The regions of each candidate: rows below heights, or drawn regions."""
     for index, candidate in enumerate(message.candidates):
         heights = [int(height) for height in candidate.rows]
         place = f'{field}.candidates[{index}].rows'

@@ -15,7 +15,7 @@ from blocks_planning.ros.bagging.repair import claim, is_finished, repair_claime
 
 FLUSH_BYTES = 2**20
 MOST_WAITING_BYTES = 2**24
-"""Size of waiting messages above which further ones are lost, while the disk is full [bytes]."""
+"""Size of waiting messages above which further ones are dropped, while the disk is full [bytes]."""
 
 
 class BagWriter:

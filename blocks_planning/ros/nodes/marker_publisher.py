@@ -4,9 +4,11 @@ Every array begins with a marker that deletes all others, so the latest array is
 see :mod:`blocks_planning.view.solids` for its contents. When scenes change faster than they are
 published, intermediate ones are skipped.
 
-| | | |---|---| | subscribes | `trial`, `state`, `subgoal`, `outcome` (latched) | | publishes |
-`markers` (latched) | | parameters | `remind_period_s`; `frame_id`; `cell_size`: side of a cell in
-metres; `publish_period_s`: longest time until a change is shown |
+| | |
+|---|---|
+| subscribes | `trial`, `state`, `subgoal`, `outcome` (latched) |
+| publishes | `markers` (latched) |
+| parameters | `remind_period_s`; `frame_id`; `cell_size`: side of a cell in metres; `publish_period_s`: longest time until a change is shown |
 """
 
 from __future__ import annotations

@@ -5,9 +5,11 @@ world that was killed and restarted continues with the board of the running tria
 cannot be written to disk, the order is not executed; the trial ends, and its outcome has the
 reason.
 
-| | | |---|---| | subscribes | `trial`, `outcome` (latched), `action` (stream) | | publishes |
-`state` (latched), `action/outcome` (stream) | | parameters | `remind_period_s`; `frame_id`;
-`journal_dir`: folder of the journal; `placing_s`: duration of a placement |
+| | |
+|---|---|
+| subscribes | `trial`, `outcome` (latched), `action` (stream) |
+| publishes | `state` (latched), `action/outcome` (stream) |
+| parameters | `remind_period_s`; `frame_id`; `journal_dir`: folder of the journal; `placing_s`: duration of a placement |
 """
 
 from __future__ import annotations

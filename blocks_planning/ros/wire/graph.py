@@ -23,7 +23,7 @@ from blocks_planning.ros.wire.topics import (
 
 
 class NodeTopics(NamedTuple):
-    """A node by its name, and its topics; ``views`` is what it publishes for viewers only."""
+    """A node by its name, and its topics; ``views`` are its publications for viewers only."""
 
     name: str
     listens: tuple[Topic, ...]
@@ -69,5 +69,5 @@ GRAPH = {
 }
 
 LISTENERS = (BAG_RECORDER.name, MARKER_PUBLISHER.name, TRIAL_VIEW.name, WATCHER.name)
-"""Nodes that only record or show: a script waits for them at its beginning, but no trial ends
-because they are gone."""
+"""Nodes that only record or show: a script waits for them at the start, but no trial ends because
+they are missing."""

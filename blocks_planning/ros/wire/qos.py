@@ -1,11 +1,11 @@
-"""Quality of service, by intent."""
+"""Profiles of quality of service, by purpose."""
 
 from __future__ import annotations
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 STREAM_DEPTH = 1000
-"""A queue that is shallower than a burst at either end silently drops messages."""
+"""Depth of queues: a queue at either end that is shallower than a burst silently drops messages."""
 
 
 def latched_state(depth: int = 1) -> QoSProfile:
@@ -14,12 +14,12 @@ def latched_state(depth: int = 1) -> QoSProfile:
 
 
 def every_latched_state() -> QoSProfile:
-    """For subscribers of latched topics: begin with the latest message, then miss none."""
+    """For subscribers of latched topics: receive the latest message, then all later ones."""
     return _profile(STREAM_DEPTH, DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def stream() -> QoSProfile:
-    """For messages that have to arrive once; used at both ends."""
+    """For messages that must arrive once; used at both ends."""
     return _profile(STREAM_DEPTH, DurabilityPolicy.VOLATILE)
 
 

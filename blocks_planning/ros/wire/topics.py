@@ -1,16 +1,16 @@
-"""The topics of the graph: one table, from which nodes, the recorder and the tests work.
+"""The topics of the graph, in one table that nodes, the recorder and the tests use.
 
 | topic | content | QoS |
 |---|---|---|
-| `trial` | the trial that runs | latched |
-| `state` | the board, and all that was observed of it | latched |
-| `search/request`, `search/result` | what filling a target takes | stream |
-| `subgoal/proposal` | what a person proposes to build next | latched, all |
-| `subgoal` | the subgoal that comes next, and all decisions so far | latched |
-| `plan` | the placements about to be carried out | latched |
-| `action`, `action/outcome` | a block to drop, and what became of it | stream |
-| `outcome` | how the trial ended; every node stops working on it | latched |
-| `markers` | the tower in space, for viewers only | latched |
+| `trial` | the running trial | latched |
+| `state` | the board, with all observations | latched |
+| `search/request`, `search/result` | whether a target can be filled, and the cost | stream |
+| `subgoal/proposal` | a region that a person proposes | latched, all |
+| `subgoal` | the next subgoal, and all decisions so far | latched |
+| `plan` | the placements that will be carried out | latched |
+| `action`, `action/outcome` | an order, and its outcome | stream |
+| `outcome` | the end of the trial; every node stops working on it | latched |
+| `markers` | the tower in three dimensions, for viewers only | latched |
 
 Names are relative: a namespace or a remap moves the whole graph.
 """
@@ -31,17 +31,18 @@ from blocks_planning.trials.execution import SubgoalChosen
 
 
 class Topic(NamedTuple):
-    """A topic, and how its messages are converted.
+    """A topic, and the conversion of its messages.
 
     Attributes:
         name: relative.
         ros_type: of its messages.
-        kind: the message of :mod:`blocks_planning.trials` that they stand for.
+        kind: the corresponding message of :mod:`blocks_planning.trials`.
         to_ros: ``to_ros(board, message)``; the board is that of the trial. `trial` and `outcome`
-            need none and take None.
-        from_ros: ``from_ros(board, message)``, its inverse but for headers and usual sentences.
-        latched: whether a node that starts late gets what was published before.
-        depth: number of a latched topic's messages that it gets.
+            need no board: it is None.
+        from_ros: ``from_ros(board, message)``, its inverse except for headers and explanatory
+            sentences.
+        latched: whether a node that starts late receives earlier messages.
+        depth: number of messages of a latched topic that it receives.
     """
 
     name: str
@@ -147,7 +148,7 @@ TOPICS = (
 
 
 class ViewTopic(NamedTuple):
-    """A latched topic for viewers: no part of a trial listens, and no record depends on it."""
+    """A latched topic for viewers: no part subscribes to it, and no record depends on it."""
 
     name: str
     ros_type: type[Any]
@@ -159,7 +160,7 @@ class ViewTopic(NamedTuple):
 
     @property
     def subscription_qos(self) -> QoSProfile:
-        """Quality of service of subscriptions that must miss nothing."""
+        """Quality of service of subscriptions that must not miss a message."""
         return qos.every_latched_state()
 
 

@@ -42,7 +42,7 @@ class Walks(NamedTuple):
     following: np.ndarray  # int32 (n,): another outline with equally many cells, or -1
     first: np.ndarray  # int32 (cells + 1,): an outline with that many cells, or -1
     slots: np.ndarray  # int32 (2**k,), at least twice n: a hash table of outlines, -1 where free
-    ended: np.ndarray  # uint64 (1, words): sequences after which nothing legal is left
+    ended: np.ndarray  # uint64 (1, words): sequences after which no legal placement is left
     moves: np.ndarray  # mask (blocks,)
 
 

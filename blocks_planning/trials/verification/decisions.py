@@ -56,7 +56,7 @@ def _answers(decision: Decision) -> Iterator[tuple[Query, SolveResult]]:
 
 
 def wrong_decision(record: TrialRecord, index: int) -> Iterator[str]:
-    """What is wrong with a decision, apart from how it was executed."""
+    """The errors of a decision, apart from its execution."""
     entry = record.decisions[index]
     situation = situation_of(record, index)
     chains = list(record.spec.strategy.chains(situation))

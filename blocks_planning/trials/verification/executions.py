@@ -33,7 +33,7 @@ def wrong_execution(record: TrialRecord) -> Iterator[str]:
 def _execution(
     record: TrialRecord, entry: DecisionRecord, seen: History, due: int, is_last: bool
 ) -> tuple[str, int]:
-    """What is wrong with an execution, or '' and the sequence where the next decision is due."""
+    """The error of an execution, or '' and the sequence where the next decision is due."""
     decision = entry.decision
     if entry.sequence != due:
         return f'was made at observation {entry.sequence}, but was due at {due}', due

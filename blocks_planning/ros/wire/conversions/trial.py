@@ -26,15 +26,15 @@ from blocks_planning.trials.status import TrialStatus
 
 MAX_TRIAL_ID = 200
 MAX_STIMULUS = 4096
-"""No path is longer [characters]."""
+"""Length limit of a path [characters]."""
 MOST_BLOCKS = 256
-"""Kinds of blocks in a library."""
+"""Limit of the number of blocks in a library."""
 MOST_REASON = 300
-"""Of an outcome [characters]; it may be what another node says."""
+"""Length limit of the reason of an outcome [characters]; it may come from another node."""
 
 
 def spec_to_ros(trial_id: str, spec: TrialSpec) -> ros.TrialSpec:
-    """A trial, as it is announced or asked for. A client may change it before it sends it."""
+    """A trial, for an announcement or a goal. A client may change the message before sending."""
     return ros.TrialSpec(
         trial_id=trial_id,
         stimulus=spec.stimulus,
@@ -71,7 +71,7 @@ def spec_from_ros(message: ros.TrialSpec) -> TrialSpec:
 
 
 def started_to_ros(board: Board | None, message: TrialStarted) -> ros.TrialSpec:
-    """See :class:`TrialStarted`, which has a board of its own."""
+    """See :class:`TrialStarted`; the board is that of its specification."""
     return spec_to_ros(message.trial_id, message.spec)
 
 
@@ -93,7 +93,7 @@ _OUTCOME_STATUSES = [s.value for s in TrialStatus if s is not TrialStatus.BUILDI
 
 
 def code_of(status: TrialStatus, reason: str) -> int:
-    """The numeric code of an end; a trial that was cancelled for a reason has failed."""
+    """The numeric code of an end; a trial that was cancelled with a reason has failed."""
     if status is TrialStatus.CANCELLED and reason:
         return int(ros.TrialOutcome.CODE_FAILED)
     return int(getattr(ros.TrialOutcome, f'CODE_{status.name}'))
