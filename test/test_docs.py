@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shlex
@@ -53,6 +54,22 @@ def test_own_towers_can_be_followed(tmp_path: Path) -> None:
     said = run(['-c', '\n'.join(program)], tmp_path)
     assert re.search(r'success \d\.\d\d \[\d', said)
     assert 'stairs' in said
+
+
+def test_page_about_python_can_be_followed(tmp_path: Path) -> None:
+    blocks = [listing.text for listing in listings(ROOT / 'docs' / 'python.md')]
+    said = run(['-c', '\n'.join(blocks)], tmp_path)
+    assert 'chosen: ' in said
+    assert (tmp_path / 'arch.gif').stat().st_size > 1000
+
+
+def test_notebook_can_be_run(tmp_path: Path) -> None:
+    notebook = json.loads((ROOT / 'docs' / 'scoping.ipynb').read_text(encoding='utf-8'))
+    cells = [''.join(cell['source']) for cell in notebook['cells'] if cell['cell_type'] == 'code']
+    assert all(not cell['outputs'] for cell in notebook['cells'] if 'outputs' in cell)
+    program = ['import matplotlib', "matplotlib.use('agg')", *cells]
+    assert len(cells) == 5
+    run(['-c', '\n'.join(program)], tmp_path)
 
 
 @pytest.mark.parametrize('path', sorted((ROOT / 'docs').glob('*.md')), ids=lambda path: path.name)

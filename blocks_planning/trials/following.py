@@ -7,7 +7,8 @@ solve depends on nothing else.
 
 from __future__ import annotations
 
-from collections.abc import MutableMapping
+from collections import defaultdict
+from collections.abc import Iterable, MutableMapping
 
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placement
@@ -57,6 +58,35 @@ def follow(
         reason = TOO_MANY
     observations = tuple(board.observations)
     return TrialRecord(spec, status, observations, tuple(decisions), reason=reason)
+
+
+def run_trials(specs: Iterable[TrialSpec], workers: int = 1) -> list[TrialRecord]:
+    """Run trials one after the other. Trials of one task, search, seed and budget share solves.
+
+    Args:
+        specs: the trials.
+        workers: threads that solve the queries of a decision.
+
+    Raises:
+        ConfigurationError: for a strategy that asks a person, or a world that is observed.
+        LimitExceeded: if a problem exceeds a size limit of the search.
+    """
+    shared: defaultdict[object, dict[Query, SolveResult]] = defaultdict(dict)
+    return [
+        follow(spec, shared[spec.task, spec.search, spec.seed, spec.budget], workers)
+        for spec in specs
+    ]
+
+
+def decide(spec: TrialSpec, workers: int = 1) -> Decision:
+    """The first decision of a trial, on the board on which it begins: all candidates, the choice.
+
+    Raises:
+        ConfigurationError: for a strategy that asks a person.
+        LimitExceeded: if a problem exceeds a size limit of the search.
+    """
+    answers: dict[Query, SolveResult] = {}
+    return _decide(spec, _Board(spec).situation(0, answers), answers, workers)
 
 
 class _Board:

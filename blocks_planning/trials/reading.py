@@ -14,7 +14,7 @@ from blocks_planning.trials.fields import Fields
 from blocks_planning.trials.record import FORMAT, VERSION, TrialRecord
 
 
-def read_records(path: Path) -> list[TrialRecord]:
+def read_records(path: Path | str) -> list[TrialRecord]:
     """Read a file of records: one per line, or a single one over several lines.
 
     Raises:
@@ -22,7 +22,7 @@ def read_records(path: Path) -> list[TrialRecord]:
             message names file, line and key.
     """
     try:
-        text = path.read_text(encoding='utf-8')
+        text = Path(path).read_text(encoding='utf-8')
     except UnicodeDecodeError as error:
         raise RecordError(f'{path}: is not a text file (byte {error.start})') from None
     except OSError as error:

@@ -76,7 +76,7 @@ def check_picture_path(path: Path) -> None:
         )
 
 
-def save_picture(record: TrialRecord, path: Path) -> None:
+def save_picture(record: TrialRecord, path: Path | str) -> None:
     """Draw a trial into a file.
 
     Args:
@@ -86,6 +86,7 @@ def save_picture(record: TrialRecord, path: Path) -> None:
     Raises:
         ConfigurationError: if the suffix is unknown, or the file can't be written.
     """
+    path = Path(path)
     check_picture_path(path)
     suffix = path.suffix.lower()
     data = _animation(record) if suffix == '.gif' else _drawn(last_scene(record), suffix, DPI)
@@ -93,6 +94,11 @@ def save_picture(record: TrialRecord, path: Path) -> None:
         path.write_bytes(data)
     except OSError as error:
         raise ConfigurationError(f'{path}: cannot be written: {error.strerror}') from None
+
+
+def draw(record: TrialRecord) -> Image.Image:
+    """The end of a trial as a picture in memory; a notebook shows it."""
+    return image_of(last_scene(record))
 
 
 def draw_scene(axes: Axes, scene: Scene) -> None:
