@@ -77,7 +77,7 @@ def test_graph_runs_records_and_verifies_them(
     for recorded in (bag, out / 'trials.jsonl'):
         command = [sys.executable, '-m', 'blocks_planning.cli', 'verify', str(recorded)]
         verified = subprocess.run(command, env=environment, capture_output=True, text=True)
-        assert verified.stdout.endswith('all hold\n'), verified.stderr
+        assert verified.stdout.endswith('all consistent\n'), verified.stderr
 
     monkeypatch.syspath_prepend(installed)
     monkeypatch.delitem(sys.modules, 'graph_plug_ins', raising=False)
