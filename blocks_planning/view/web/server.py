@@ -22,7 +22,7 @@ from blocks_planning.view.web.frame import hides_costs
 from blocks_planning.view.web.guards import HEADERS, Address, RateLimit, is_same_origin
 from blocks_planning.view.web.live import FAREWELL_S, Audience, Mailbox
 from blocks_planning.view.web.pictures import replay_json, summary_json
-from blocks_planning.view.web.proposing import Refused
+from blocks_planning.subgoals.drawn import Refused
 
 with extra('page'):
     from aiohttp import web
