@@ -18,11 +18,11 @@ from typing import Any
 
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.extras import extra
+from blocks_planning.subgoals.drawn import Refused
 from blocks_planning.view.web.frame import hides_costs
 from blocks_planning.view.web.guards import HEADERS, Address, RateLimit, is_same_origin
 from blocks_planning.view.web.live import FAREWELL_S, Audience, Mailbox
 from blocks_planning.view.web.pictures import replay_json, summary_json
-from blocks_planning.subgoals.drawn import Refused
 
 with extra('page'):
     from aiohttp import web

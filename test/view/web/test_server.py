@@ -18,12 +18,12 @@ import pytest
 from aiohttp import ClientSession, WSMsgType, WSServerHandshakeError
 
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.subgoals.drawn import MalformedProposal, Refused
 from blocks_planning.view.web import live
 from blocks_planning.view.web import server as module
 from blocks_planning.view.web.frame import Seen, frame_json
 from blocks_planning.view.web.guards import HEADERS, Address, address_of
 from blocks_planning.view.web.live import Mailbox
-from blocks_planning.subgoals.drawn import MalformedProposal, Refused
 from blocks_planning.view.web.server import PageServer
 from blocks_planning.view.web.session import Session, session_after
 
