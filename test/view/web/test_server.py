@@ -25,6 +25,7 @@ from blocks_planning.view.web.frame import Seen, frame_json
 from blocks_planning.view.web.guards import HEADERS, Address, address_of
 from blocks_planning.view.web.live import Mailbox
 from blocks_planning.view.web.server import PageServer
+from blocks_planning.view.web.serving import MOST_BYTES
 from blocks_planning.view.web.session import Session, session_after
 
 from .conftest import Heard
@@ -385,7 +386,7 @@ def test_nonsense_is_refused(served: Served, body: str) -> None:
 
 
 def test_size_is_limited(served: Served) -> None:
-    large = {'padding': 'x' * module.MOST_BYTES}
+    large = {'padding': 'x' * MOST_BYTES}
     assert post(served, large)[0] == 413
     assert served.proposed == []
 
