@@ -100,13 +100,17 @@ class Session:
         return None if self._running is None else self._running.local.record()
 
     @property
+    def shown_s(self) -> float:
+        """For how long this step has been shown [s]."""
+        return self.state.on_step_s(self._clock().steady_s)
+
+    @property
     def left_s(self) -> float | None:
         """Time that is left for the trial that runs [s]; None if it is not limited."""
         trial = self.step.trial if self.step else None
         if trial is None or not trial.condition.time_limit_s or self.state.is_ended:
             return None
-        shown_s = self.state.on_step_s(self._clock().steady_s)
-        return max(0.0, trial.condition.time_limit_s - shown_s)
+        return max(0.0, trial.condition.time_limit_s - self.shown_s)
 
     def act(self, fields: Fields) -> Refused | None:
         """Do what the participant wants.
@@ -154,6 +158,7 @@ class Session:
 
     def arrive(self) -> None:
         """The page is connected."""
+        self._settle()
         self._keep(EventKind.ARRIVED)
 
     def leave(self) -> None:

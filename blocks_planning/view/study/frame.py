@@ -7,7 +7,7 @@ from typing import Any
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Block
 from blocks_planning.study.machine import State, Status
-from blocks_planning.study.plan import Step, StepKind, Trial
+from blocks_planning.study.plan import StepKind, Trial
 from blocks_planning.study.session import Session
 from blocks_planning.study.texts import parse_text
 from blocks_planning.subgoals.proposals import ProposalKind
@@ -36,7 +36,7 @@ def frame_json(title: str, session: Session | None) -> Json:
     frame['may_stop'] = step.kind not in (StepKind.CONSENT, StepKind.DEBRIEF)
     frame['stopped'] = state.status is Status.STOPPED
     if step.trial is not None and session.record is not None:
-        frame['trial'] = _trial_json(step, step.trial, session.record, session)
+        frame['trial'] = _trial_json(step.trial, session.record, session)
     return frame
 
 
@@ -48,7 +48,7 @@ def text_json(text: str) -> list[Json]:
     ]
 
 
-def _trial_json(step: Step, trial: Trial, record: TrialRecord, session: Session) -> Json:
+def _trial_json(trial: Trial, record: TrialRecord, session: Session) -> Json:
     task, state = trial.spec.task, session.state
     label = f'{"Practice tower" if trial.is_practice else "Tower"} {trial.number} of {trial.total}'
     shown: Json = {
@@ -101,5 +101,5 @@ def _answer(record: TrialRecord, state: State) -> str:
         return ''
     last = state.proposals[-1]
     if last.kind is not ProposalKind.BUILD:
-        return last.kind.value
+        return str(last.kind.value)
     return 'built' if len(record.observations) - 1 > last.sequence else 'failed'

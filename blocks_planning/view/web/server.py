@@ -31,7 +31,7 @@ MOST_REPLAYS = 5
 _BURST, _PER_S = 20, 5.0
 _ANSWER_S = 5.0
 _HEARTBEAT_S = 10.0
-_STATIC = Path(__file__).with_name('static')
+STATIC = Path(__file__).with_name('static')
 
 Propose = Callable[[Any], 'Future[Refused | None]']
 
@@ -62,8 +62,8 @@ class PageServer(Server):
 
     def add_routes(self, router: web.UrlDispatcher) -> None:
         """See :class:`Server`."""
-        router.add_get('/', sender(_STATIC / 'index.html'))
-        for path in _STATIC.iterdir():
+        router.add_get('/', sender(STATIC / 'index.html'))
+        for path in STATIC.iterdir():
             if path.suffix != '.html':
                 router.add_get(f'/{path.name}', sender(path))
         router.add_get(SOCKET, self._live)
