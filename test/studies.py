@@ -58,8 +58,9 @@ class Served:
 
     def crash(self) -> None:
         """End without a word, as a process does that is killed."""
-        self.desk.release()
-        self.desk.session = None
+        if self.desk.session is not None:
+            self.desk.session.release()
+            self.desk.session = None
         self.server.stop()
 
 

@@ -88,9 +88,17 @@ class Desk:
             self._forget(self.session)
 
     def release(self) -> None:
-        """The server ends."""
-        if self.session is not None:
-            self.session.release()
+        """The server ends; the session goes on with the next one.
+
+        Raises:
+            RecordError: if it can't be kept that the participant's page is gone.
+        """
+        session, self.session = self.session, None
+        if session is not None:
+            try:
+                session.leave()
+            finally:
+                session.release()
 
     def standings(self) -> list[Standing]:
         """How far each participant is, by number."""

@@ -181,10 +181,10 @@ class Session:
         """The experimenter closes the session; it can be opened again."""
         if self.step is not None:
             self._keep(EventKind.CLOSED)
-        self._log.close()
+        self.release()
 
     def release(self) -> None:
-        """The server ends; the session goes on with the next one."""
+        """Let the log go; nothing more can be kept."""
         self._log.close()
 
     def _propose(self, running: _Running, word: str, fields: Fields) -> Refused | None:

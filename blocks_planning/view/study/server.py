@@ -101,8 +101,9 @@ class StudyServer(Server):
 
     async def say_farewell(self) -> None:
         """See :class:`Server`."""
+        with suppress(RecordError):
+            await self._do(self._desk.release)
         await self._seat.close()
-        await self._do(self._desk.release)
 
     async def _do(self, function: Callable[[], T]) -> T:
         """Do something with the desk or its session, alone; remember what went wrong."""
