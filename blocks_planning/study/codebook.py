@@ -52,7 +52,7 @@ TABLES: Mapping[str, tuple[Column, ...]] = MappingProxyType(
             Column('tower', str, '', 'address of the silhouette'),
             Column('seed', int, '', 'of the trial'),
             Column('time_limit_s', int, 's', 'of the trial; 0: none'),
-            Column('trial_id', str, '', 'names the record in records.jsonl'),
+            Column('trial_id', str, '', 'names the record in records/CONDITION.jsonl'),
             Column('began_at', str, 'UTC', 'when the trial was first ready to be shown'),
             Column('ended_at', str, 'UTC', 'when it ended'),
             Column('proposals', int, '', 'regions or blocks that were proposed, or withdrawn'),

@@ -16,7 +16,8 @@ from blocks_planning.study.log import read_events
 from blocks_planning.study.machine import Status
 from blocks_planning.study.tables import Row, runs_of, tables_of
 
-RECORDS, PRACTICE = 'records.jsonl', 'practice_records.jsonl'
+RECORDS, PRACTICE = 'records', 'practice'
+"""Folders of records, with a file for each condition."""
 
 
 class Exported(NamedTuple):
@@ -39,7 +40,7 @@ def export_study(folder: Path, out: Path) -> Exported:
     """
     read_study_json(folder)
     tables: dict[str, list[Row]] = {name: [] for name in TABLES}
-    lines: dict[str, list[str]] = {RECORDS: [], PRACTICE: []}
+    lines: dict[str, list[str]] = {}
     for kept in kept_participants(folder):
         events = read_events(kept.folder)
         found = tables_of(kept.participant.code, _status(events).value, events)
@@ -47,7 +48,9 @@ def export_study(folder: Path, out: Path) -> Exported:
             tables[name] += rows
         for run in runs_of(events):
             if run.record is not None:
-                lines[PRACTICE if run.is_practice else RECORDS].append(run.record.to_line())
+                place = PRACTICE if run.is_practice else RECORDS
+                name = f'{place}/{run.began.data["condition"]}.jsonl'
+                lines.setdefault(name, []).append(run.record.to_line())
     try:
         return _write(out, tables, lines)
     except OSError as error:
@@ -62,7 +65,8 @@ def _write(out: Path, tables: dict[str, list[Row]], lines: dict[str, list[str]])
     for name, rows in all_rows.items():
         _write_csv(out / f'{name}.csv', described[name], rows)
         files[f'{name}.csv'] = len(rows)
-    for name, texts in lines.items():
+    for name, texts in sorted(lines.items()):
+        (out / name).parent.mkdir(exist_ok=True)
         (out / name).write_text(''.join(f'{text}\n' for text in texts), encoding='utf-8')
         files[name] = len(texts)
     try:

@@ -110,6 +110,7 @@ def test_nothing_is_lost_when_the_server_is_killed(tmp_path: Path) -> None:
     assert kinds.count(EventKind.ENDED) == 2
     assert EventKind.FINISHED in kinds
     export_study(tmp_path / 'out', tmp_path / 'tables')
-    records = read_records(tmp_path / 'tables' / 'records.jsonl')
+    paths = (tmp_path / 'tables' / 'records').iterdir()
+    records = [record for path in paths for record in read_records(path)]
     assert [record.status for record in records] == [TrialStatus.SUCCESS] * 2
     assert [list(contradictions(record)) for record in records] == [[], []]

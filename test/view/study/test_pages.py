@@ -276,7 +276,8 @@ def compare(folder: Path, out: Path) -> None:
     people = [(row['participant'], row['status']) for row in tables['participants']]
     assert people == [(code, 'finished') for code in ('P01', 'P02', 'P03')]
     assert [row['visits'] for row in tables['participants']] == ['1', '1', '2']
-    records = read_records(out / 'records.jsonl') + read_records(out / 'practice_records.jsonl')
+    paths = [*out.glob('records/*'), *out.glob('practice/*')]
+    records = [record for path in paths for record in read_records(path)]
     assert len(records) == len(tables['trials']) == 18
     for record in records:
         assert list(contradictions(record)) + list(differs_from_rerun(record)) == []
