@@ -61,6 +61,7 @@ class Served:
         if self.desk.session is not None:
             self.desk.session.release()
             self.desk.session = None
+        self.desk.folder.close()
         self.server.stop()
 
 

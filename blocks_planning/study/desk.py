@@ -94,11 +94,13 @@ class Desk:
             RecordError: if it can't be kept that the participant's page is gone.
         """
         session, self.session = self.session, None
-        if session is not None:
-            try:
+        try:
+            if session is not None:
                 session.leave()
-            finally:
+        finally:
+            if session is not None:
                 session.release()
+            self.folder.close()
 
     def standings(self) -> list[Standing]:
         """How far each participant is, by number."""

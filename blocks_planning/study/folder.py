@@ -20,41 +20,54 @@ from blocks_planning.study.log import Log, read_events
 from blocks_planning.study.plan import CODE
 from blocks_planning.study.session import Participant
 from blocks_planning.study.spec import Study
+from blocks_planning.trials import disk
+from blocks_planning.trials.linefile import LineFile
 
-STUDY = 'study.json'
+STUDY, LOCK = 'study.json', 'lock'
 PARTICIPANTS = 'participants'
 
 
 class StudyFolder:
-    """The folder of one study.
+    """The folder of one study; one process at a time works in it.
 
     Attributes:
         path: of the folder.
     """
 
-    def __init__(self, path: Path, study: Study) -> None:
+    def __init__(self, path: Path, study: Study, wait_s: float = disk.LOCK_WAIT_S) -> None:
         """Open or make it.
+
+        Args:
+            path: of the folder.
+            study: that it is to hold.
+            wait_s: how long to wait for another process [s].
 
         Raises:
             ConfigurationError: if it holds another study, or can't be made.
+            RecordError: if another process works in it.
         """
         self.path = path
         self._study_id = study.study_id
         there = path / STUDY
         try:
             (path / PARTICIPANTS).mkdir(parents=True, exist_ok=True)
+            self._lock = LineFile(path / LOCK, wait_s)
             if not there.exists():
-                _write(
-                    there, json.dumps({'study_id': study.study_id, **study.to_json()}, indent=2)
-                )
+                said = {'study_id': study.study_id, **study.to_json()}
+                _write(there, json.dumps(said, indent=2))
         except OSError as error:
             raise ConfigurationError(f'--out {path}: {error.strerror}') from None
         found = read_study_json(path)['study_id']
         if found != study.study_id:
+            self.close()
             raise ConfigurationError(
                 f'--out {path}: holds another study ({found}, not {study.study_id}); the file of '
                 'the study or one of its towers has changed: name another folder'
             )
+
+    def close(self) -> None:
+        """Let another process work in it."""
+        self._lock.close()
 
     def participants(self) -> list[Participant]:
         """Who has taken part so far, by number."""

@@ -14,6 +14,7 @@ import pytest
 from blocks_planning.errors import ConfigurationError, RecordError
 from blocks_planning.study.desk import Desk
 from blocks_planning.study.events import EventKind
+from blocks_planning.study.folder import StudyFolder
 from blocks_planning.study.log import read_events
 from blocks_planning.study.machine import Status
 from blocks_planning.study.plan import StepKind
@@ -286,6 +287,14 @@ def test_a_closed_session_can_be_opened_again(opened: Callable[[], Desk]) -> Non
 def test_the_file_of_another_study_is_refused(
     opened: Callable[[], Desk], tmp_path: Path, clock: Clock
 ) -> None:
-    study = opened().study
+    desk = opened()
+    study = desk.study
+    desk.release()
     with pytest.raises(ConfigurationError, match='holds another study'):
         Desk(replace(study, seed=1), tmp_path / 'out', clock)
+
+
+def test_two_servers_do_not_share_a_folder(opened: Callable[[], Desk], tmp_path: Path) -> None:
+    study = opened().study
+    with pytest.raises(RecordError, match='is being written by another process'):
+        StudyFolder(tmp_path / 'out', study, wait_s=0)

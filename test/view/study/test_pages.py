@@ -238,6 +238,9 @@ def test_three_participants_and_what_they_leave(lab: Lab, opened: Opener, tmp_pa
             *(1, 3, 3, 1)
         ]
         someone.page.context.close()
+    experimenter.set_viewport_size({'width': 400, 'height': 860})
+    assert experimenter.evaluate('document.documentElement.scrollWidth') <= 400
+    assert violations(experimenter) == []
     lab.server.stop()
     compare(lab.folder, tmp_path / 'tables')
 

@@ -134,7 +134,7 @@ export class Building {
     const { width, height } = this.board.trial;
     const [wide, high] = this.trial.library[block];
     const cells = rectangle([column, place[1]], [column + wide - 1, place[1] + high - 1]);
-    this.tell('preview', { region: pictureOf(cells, width, height) });
+    this.tell({ region: pictureOf(cells, width, height) });
   }
 
   #letFall(event) {

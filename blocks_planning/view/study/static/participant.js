@@ -29,12 +29,15 @@ const OVER = {
   gave_up: 'You gave this tower up.',
 };
 
+const SETTLED_MS = 150; // a preview that is shown for less is not told
+
 let frame = null;
 let shownAt = 0; // when this state came up
 const board = new Board(byId('board'));
 const talk = new Talk(take, refused, showLink);
 const tell = (note, more) => talk.note(frame, note, more);
-const modes = [Scoping, Building].map((Mode) => ({ Mode, own: new Mode(board, wish, tell) }));
+const tellPreview = settled((more) => tell('preview', more));
+const modes = [Scoping, Building].map((Mode) => ({ Mode, own: new Mode(board, wish, tellPreview) }));
 const trace = new Trace(board, tell);
 const showText = whenNew((blocks) => byId('text').replaceChildren(...elementsOf(blocks)));
 const showStep = whenNew(() => {
@@ -44,6 +47,14 @@ const showStep = whenNew(() => {
 const showState = whenNew(() => {
   shownAt = performance.now();
 });
+
+function settled(call) {
+  let timer;
+  return (value) => {
+    clearTimeout(timer);
+    timer = setTimeout(() => call(value), SETTLED_MS);
+  };
+}
 
 function wish(word, fields) {
   if (talk.waiting !== null) return;

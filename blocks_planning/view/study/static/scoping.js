@@ -31,7 +31,7 @@ export class Scoping {
       this.drawing.adds = event.target.checked;
     });
     const drawn = () => {
-      if (this.drawing.isOn && this.drawing.cells.size > 0) tell('preview', this.#region());
+      if (this.drawing.isOn && this.drawing.cells.size > 0) tell(this.#region());
     };
     board.place.addEventListener('pointerup', drawn);
     board.place.addEventListener('keyup', (event) => {
