@@ -298,3 +298,20 @@ def test_two_servers_do_not_share_a_folder(opened: Callable[[], Desk], tmp_path:
     study = opened().study
     with pytest.raises(RecordError, match='is being written by another process'):
         StudyFolder(tmp_path / 'out', study, wait_s=0)
+
+
+def test_time_does_not_run_while_the_server_is_down(
+    opened: Callable[[], Desk], clock: Clock
+) -> None:
+    desk = opened()
+    desk.begin('P01')
+    session = session_of(desk)
+    session.arrive()
+    Person(session).go_to(StepKind.TRIAL, 'building')
+    clock.s += 20
+    session.note({'note': 'visible', 'step': session.state.step, 'visible': False})
+    session.release()  # killed: that the page is gone is not kept
+    desk.session = None
+    clock.s += 500
+    again = session_of(opened())
+    assert (again.left_s, again.state.is_present) == (40, False)
