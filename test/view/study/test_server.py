@@ -6,20 +6,18 @@ import asyncio
 import errno
 import json
 import os
-from collections.abc import Awaitable, Callable, Iterator
-from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
-from aiohttp import ClientSession, CookieJar, WSMsgType, WSServerHandshakeError
-from studies import TOKEN, Served, served
+from aiohttp import ClientSession, WSMsgType
+from studies import Served, served
 
 from blocks_planning.study.log import read_events
 from blocks_planning.view.study.seat import REPLACED, TAKEN
 
-DEADLINE_S = 20.0
-KEYS = ('a' * 16, 'b' * 16)
+from .conftest import KEYS, ask, page_of, state_of
+
 SHOWN = {
     *('kind', 'title', 'stage', 'text', 'trial', 'acts', 'step', 'steps', 'may_stop', 'stopped'),
 }
@@ -27,64 +25,6 @@ SHOWN_OF_TRIALS = {
     *('id', 'stimulus', 'width', 'height', 'silhouette', 'library', 'wishes', 'all_blocks'),
     *('sequence', 'proposals', 'answer', 'status', 'timed_out', 'left_s', 'limit_s', 'places'),
 }
-
-
-@pytest.fixture
-def study(tmp_path: Path) -> Iterator[Served]:
-    """A study whose first participant's session has begun."""
-    with served(tmp_path) as made:
-        made.desk.begin('P01')
-        yield made
-
-
-def ask(talk: Callable[[ClientSession], Awaitable[Any]]) -> Any:
-    """Talk with a server as a client of its own."""
-
-    async def run() -> Any:
-        # A number is an address that cookies are kept for, too.
-        async with ClientSession(cookie_jar=CookieJar(unsafe=True)) as client:
-            return await asyncio.wait_for(talk(client), DEADLINE_S)
-
-    return asyncio.run(run())
-
-
-class Page:
-    """A participant's page."""
-
-    def __init__(self, socket: Any) -> None:
-        self.socket = socket
-        self.frame: dict[str, Any] = {}
-
-    async def hear(self) -> dict[str, Any]:
-        """What the server says next."""
-        message = await self.socket.receive()
-        assert message.type is WSMsgType.TEXT, message
-        said: dict[str, Any] = json.loads(message.data)
-        if said['kind'] == 'frame':
-            self.frame = said
-        return said
-
-    async def act(self, word: str, **fields: Any) -> dict[str, Any]:
-        """Do something, and hear what becomes of it."""
-        said = {'act': word, 'number': self.frame['acts'], 'step': self.frame['step']}
-        await self.socket.send_json({'thinking_s': 1.0, **said, **fields})
-        return await self.hear()
-
-    async def go_to(self, step: int) -> None:
-        """Go on up to a step, without a trial between."""
-        while self.frame['step'] < step:
-            await self.act('agree' if self.frame['stage'] == 'consent' else 'next')
-
-
-@asynccontextmanager
-async def page_of(study: Served, client: ClientSession, key: str = KEYS[0]) -> Any:
-    """A participant's page that is connected."""
-    headers = {'Origin': study.base}
-    async with client.ws_connect(f'{study.base}/live', headers=headers) as socket:
-        await socket.send_json({'hello': key})
-        page = Page(socket)
-        await page.hear()
-        yield page
 
 
 def kinds(study: Served) -> list[str]:
@@ -264,70 +204,3 @@ def test_a_server_that_was_killed_goes_on(tmp_path: Path) -> None:
     ask(lambda client: first(client, killed))
     with served(tmp_path) as again:
         ask(lambda client: second(client, again))
-
-
-# The experimenter
-
-
-async def state_of(study: Served, client: ClientSession) -> Any:
-    async with client.get(study.experimenter) as answer:
-        assert answer.status == 200
-    async with client.get(f'{study.base}/experimenter/state') as answer:
-        assert answer.status == 200
-        return await answer.json()
-
-
-@pytest.mark.parametrize(
-    'path', ['', '/state', '/begin', '/close', '/reopen', '?token=wrong', '/state?token=' + TOKEN]
-)
-def test_without_the_token_nothing_is_the_experimenters(study: Served, path: str) -> None:
-    async def talk(client: ClientSession) -> None:
-        method = 'POST' if path in ('/begin', '/close', '/reopen') else 'GET'
-        async with client.request(
-            method, f'{study.base}/experimenter{path}', json={}, headers={'Origin': study.base}
-        ) as answer:
-            assert answer.status == 401
-
-    ask(talk)
-    assert len(study.desk.standings()) == 1
-
-
-def test_the_experimenter_begins_closes_and_opens_again(study: Served) -> None:
-    async def talk(client: ClientSession) -> None:
-        assert (await state_of(study, client))['current'] == 'P01'
-        assert (await command(client, 'begin', 'P02'))[0] == 409
-        assert (await command(client, 'close', ''))[1]['may_begin']
-        status, state = await command(client, 'begin', 'P02')
-        assert (status, state['current']) == (200, 'P02')
-        assert (await command(client, 'begin', '../x'))[0] == 409
-        await command(client, 'close', '')
-        status, state = await command(client, 'reopen', 'P01')
-        assert [one['status'] for one in state['participants']] == ['running', 'closed']
-        async with page_of(study, client) as page:
-            assert page.frame['step'] == 0
-            await command(client, 'close', '')
-            assert (await page.hear())['stage'] == 'waiting'
-
-    async def command(client: ClientSession, name: str, code: str) -> tuple[int, Any]:
-        headers = {'Origin': study.base}
-        url = f'{study.base}/experimenter/{name}'
-        async with client.post(url, json={'code': code}, headers=headers) as answer:
-            return answer.status, await answer.json()
-
-    ask(talk)
-
-
-@pytest.mark.parametrize('origin', ['http://evil.example', 'null', None])
-def test_another_page_changes_nothing(study: Served, origin: str | None) -> None:
-    headers = {} if origin is None else {'Origin': origin}
-
-    async def talk(client: ClientSession) -> None:
-        await state_of(study, client)
-        url = f'{study.base}/experimenter/close'
-        async with client.post(url, json={'code': ''}, headers=headers) as answer:
-            assert answer.status == 403
-        with pytest.raises(WSServerHandshakeError):
-            await client.ws_connect(f'{study.base}/live', headers=headers)
-
-    ask(talk)
-    assert study.desk.session is not None
