@@ -63,7 +63,6 @@ def serve(file: Path, out: Path, host: str, port: int) -> None:
     where it ended, for whatever reason. The experimenter's page requires a token; it is new at every
     start, unless BLOCKS_PLANNING_STUDY_TOKEN is set to 16 or more letters and digits.
     """
-    from blocks_planning.search.warming import warm_search
     from blocks_planning.study.desk import Desk
     from blocks_planning.study.spec import read_study
     from blocks_planning.view.study.server import StudyServer
@@ -73,7 +72,7 @@ def serve(file: Path, out: Path, host: str, port: int) -> None:
     desk = Desk(read_study(file), out)
     server = StudyServer(address, desk, os.environ.get(TOKEN_VARIABLE, ''))
     for condition in desk.study.conditions:
-        warm_search(condition.mode.effort(desk.study.effort).search)
+        condition.mode.effort(desk.study.effort).prepare(desk.study.towers[0].task)
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: ended.set())

@@ -15,7 +15,9 @@ from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placement
 from blocks_planning.board.geometry import Mask
 from blocks_planning.board.task import Task
+from blocks_planning.search.result import Problem
 from blocks_planning.search.searches import Search, make_search
+from blocks_planning.search.solve import solve
 from blocks_planning.subgoals.drawn import (
     MalformedProposal,
     Refused,
@@ -44,6 +46,10 @@ class Effort(NamedTuple):
 
     search: Search
     budget: int
+
+    def prepare(self, task: Task) -> None:
+        """Solve a task in one attempt, so that the search is compiled before it is needed."""
+        solve(Problem(task, 0, task.silhouette), self.search, 0, 0)
 
 
 class Mode(NamedTuple):

@@ -1,4 +1,4 @@
-"""A file that lines are appended to, and that survives being interrupted."""
+"""A file to which lines are appended, and that stays valid when the process is interrupted."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from blocks_planning.trials import disk
 class LineFile:
     """A line is on disk when :meth:`append` returns, or not there at all.
 
-    What an interrupted writer left of its last line is put into a file of its own beside it, with
-    the suffix .torn, never deleted. Nobody else writes meanwhile.
+    An incomplete last line of an interrupted writer is moved to a separate file with the suffix
+    .torn, never deleted. The file is locked for other writers.
 
     Attributes:
         path: of the file.
@@ -26,7 +26,7 @@ class LineFile:
             wait_s: how long to wait for another process that writes it [s].
 
         Raises:
-            RecordError: if it can't be written, or another process still writes it.
+            RecordError: if it can't be written, or another process is still writing it.
         """
         self.path = path
         try:
@@ -61,13 +61,13 @@ class LineFile:
         return self._all().split(b'\n')[:-1]
 
     def append(self, line: bytes) -> None:
-        """Write a line and see it on disk.
+        """Write a line, and return when it is on disk.
 
         Args:
             line: without its end.
 
         Raises:
-            RecordError: if the disk does not take it; the file is as it was.
+            RecordError: if it cannot be written; the file is then unchanged.
         """
         try:
             disk.append(self._file.fileno(), line + b'\n', sync=True)

@@ -1,4 +1,4 @@
-"""A trial inside one process: carries messages between the parts until there are none."""
+"""A trial inside one process: passes messages between the parts until none is left."""
 
 from __future__ import annotations
 
@@ -45,8 +45,7 @@ class LocalTrial:
         Args:
             spec: the trial.
             cancel: ends it, from another thread, with status ``cancelled``.
-            observe: is shown every message, before the parts are; the trial goes on when it
-                returns.
+            observe: called with every message before the parts receive it.
         """
         self.spec = spec
         self._cancel = cancel or CancelToken()
@@ -66,7 +65,7 @@ class LocalTrial:
         return record
 
     def say(self, message: Message) -> None:
-        """Carry a message, and all that follows from it."""
+        """Pass a message to the parts, and all messages that follow from it."""
         questions: list[Solve] = []
         messages: deque[Message] = deque([message])
         cancelling = isinstance(message, CancelTrial)
@@ -100,8 +99,8 @@ def run_trial(
         spec: the trial.
         cancel: see :class:`LocalTrial`.
         observe: see :class:`LocalTrial`.
-        proposals: of a person, one for each turn. A trial that waits for more than there are
-            ends with status ``cancelled``.
+        proposals: of a person, one for each turn. A trial that needs more proposals ends with
+            status ``cancelled``.
     """
     trial = LocalTrial(spec, cancel, observe)
     proposed = iter(proposals)

@@ -1,4 +1,4 @@
-"""The file that finished records are appended to, one in a line."""
+"""The file to which finished records are appended, one per line."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class RecordFile:
         """Open or make the file; see :class:`LineFile`.
 
         Raises:
-            RecordError: also if a line is no record.
+            RecordError: also if a line is not a record.
         """
         self.finished: set[str] = set()
         self._file = LineFile(path, wait_s)
@@ -37,10 +37,10 @@ class RecordFile:
             raise
 
     def append(self, record: TrialRecord) -> None:
-        """Write a record and see it on disk.
+        """Write a record, and return when it is on disk.
 
         Raises:
-            RecordError: if the disk does not take it; the file is as it was.
+            RecordError: if it cannot be written; the file is then unchanged.
         """
         self._file.append(record.to_line().encode())
         if record.status is not TrialStatus.CANCELLED:
@@ -52,9 +52,11 @@ class RecordFile:
 
 
 def _read(line: bytes, place: str) -> tuple[str, bool]:
-    """Which trial a record is of, and whether it came to its own end: cancelled ones did not."""
+    """The trial id of a record, and whether the trial was finished and not cancelled."""
     try:
         record = json.loads(line)
         return str(record['trial_id']), record['status'] != TrialStatus.CANCELLED.value
     except (ValueError, KeyError, TypeError, RecursionError):
-        raise RecordError(f'{place}: is not a trial record; move the file away') from None
+        raise RecordError(
+            f'{place}: is not a trial record; move the file to another place'
+        ) from None
