@@ -103,8 +103,17 @@ class Finger(Participant):
     """The same with a finger."""
 
     def build(self) -> None:
-        self.page.locator('.piece').nth(0).tap()
-        self.page.touchscreen.tap(*point_of(self.page, 5, 2))
+        box = self.page.locator('.piece').nth(0).bounding_box()
+        assert box is not None
+        start = box['x'] + box['width'] / 2, box['y'] + box['height'] / 2
+        touch = self.page.context.new_cdp_session(self.page)
+        for kind, place in (
+            ('touchStart', start),
+            ('touchMove', point_of(self.page, 5, 2)),
+            ('touchEnd', None),
+        ):
+            points = [] if place is None else [dict(zip('xy', place, strict=True))]
+            touch.send('Input.dispatchTouchEvent', {'type': kind, 'touchPoints': points})
         self.page.locator('.block').wait_for()
         self.give_up()
 
