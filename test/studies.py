@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from blocks_planning.study.desk import Desk
 from blocks_planning.study.spec import read_study
@@ -36,13 +37,14 @@ class Served:
         folder: where the study is kept.
     """
 
-    def __init__(self, folder: Path, port: int = 0, limit_s: int = 3600) -> None:
+    def __init__(self, folder: Path, port: int = 0, limit_s: int = 3600, token: str = '') -> None:
         towers, path = folder / 'arch.txt', folder / 'study.yaml'
         towers.write_text(ARCH)
         path.write_text(STUDY.format(towers=towers).replace('3600', str(limit_s)))
         self.folder = folder / 'out'
         self.desk = Desk(read_study(path), self.folder)
-        self.server = StudyServer(Address(port=port), self.desk, TOKEN)
+        host = '0.0.0.0' if token else '127.0.0.1'
+        self.server = StudyServer(Address(host, port, token), self.desk, TOKEN)
         self.server.start()
         self.base = f'http://127.0.0.1:{self.server.address.port}'
 
@@ -66,7 +68,7 @@ class Served:
 
 
 @contextmanager
-def served(folder: Path, **options: int) -> Iterator[Served]:
+def served(folder: Path, **options: Any) -> Iterator[Served]:
     """A server that ends with the block."""
     made = Served(folder, **options)
     yield made

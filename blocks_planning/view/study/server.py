@@ -35,6 +35,10 @@ _TICK_S = 0.25
 _STATIC = Path(__file__).with_name('static')
 _SHARED = ('board.js', 'cells.js', 'dom.js', 'drawing.js', 'icon.svg', 'style.css')
 """Files of the live page that these pages use too."""
+_FILES = (
+    *(path for path in _STATIC.iterdir() if path.suffix != '.html'),
+    *(live_page.STATIC / name for name in _SHARED),
+)
 _NOT_KEPT = 'This could not be saved, so it has not happened. Please tell the experimenter.'
 
 
@@ -44,6 +48,8 @@ class StudyServer(Server):
     Attributes:
         experimenter: address of the experimenter's page.
     """
+
+    public = frozenset(f'/{path.name}' for path in _FILES)
 
     def __init__(self, address: Address, desk: Desk, token: str = '') -> None:
         """Prepare the server.
@@ -62,10 +68,8 @@ class StudyServer(Server):
 
     def add_routes(self, router: web.UrlDispatcher) -> None:
         """See :class:`Server`."""
-        shared = live_page.STATIC
-        for path in (*_STATIC.iterdir(), *(shared / name for name in _SHARED)):
-            if path.suffix != '.html':
-                router.add_get(f'/{path.name}', sender(path))
+        for path in _FILES:
+            router.add_get(f'/{path.name}', sender(path))
         router.add_get('/', sender(_STATIC / 'participant.html'))
         router.add_get(f'/{EXPERIMENTER}', sender(_STATIC / 'experimenter.html'))
         router.add_get(SOCKET, self._seat.handle)

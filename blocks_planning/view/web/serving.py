@@ -42,7 +42,10 @@ class Server(ABC):
 
     Attributes:
         address: of the first page; has its port after the start.
+        public: paths that need no token: files of the package, which are no secret.
     """
+
+    public: frozenset[str] = frozenset()
 
     def __init__(self, address: Address) -> None:
         """Prepare the server; :meth:`start` starts it."""
@@ -134,7 +137,7 @@ class Server(ABC):
             return refusal(403, 'host', 'the Host header does not name this server')
         if door.token and request.path == f'/{door.page}' and 'token' in request.query:
             return _admission(door, request)
-        if not door.is_admitted(headers.get('Cookie')):
+        if request.path not in self.public and not door.is_admitted(headers.get('Cookie')):
             return refusal(401, 'token', 'open the printed address, with its token')
         from_page = is_same_origin(headers.get('Origin'), headers.get('Host'))
         if not from_page and (request.method not in ('GET', 'HEAD') or request.path == SOCKET):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 from aiohttp import ClientSession, WSServerHandshakeError
-from studies import TOKEN, Served
+from studies import TOKEN, Served, served
 
 from .conftest import ask, page_of, state_of
 
@@ -65,3 +66,26 @@ def test_another_page_changes_nothing(study: Served, origin: str | None) -> None
 
     ask(talk)
     assert study.desk.session is not None
+
+
+def test_from_other_machines_each_page_needs_its_own_token(tmp_path: Path) -> None:
+    theirs = 'a-participants-token'
+
+    async def talk(client: ClientSession) -> None:
+        async def status(path: str) -> int:
+            async with client.get(study.base + path) as answer:
+                return answer.status
+
+        assert await status('/study.css') == 200
+        assert await status(f'/experimenter?token={theirs}') == 401
+        assert await status(f'/experimenter?token={TOKEN}') == 200
+        assert await status('/experimenter/state') == 200
+        assert await status('/') == 401  # the experimenter's token is for that page alone
+        with pytest.raises(WSServerHandshakeError):
+            await client.ws_connect(f'{study.base}/live', headers={'Origin': study.base})
+        assert await status(f'/?token={theirs}') == 200
+        async with page_of(study, client) as page:
+            assert page.frame['stage'] == 'waiting'
+
+    with served(tmp_path, token=theirs) as study:
+        ask(talk)
