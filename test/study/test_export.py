@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -150,3 +151,13 @@ def test_parquet_is_the_same(exported: Tables, tmp_path: Path) -> None:
 def test_what_is_no_study_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match=r'is not the folder of a study'):
         export_study(tmp_path, tmp_path / 'tables')
+
+
+def test_who_is_deleted_is_in_no_table(exported: Tables, tmp_path: Path) -> None:
+    kept = tmp_path / 'out' / 'participants'
+    for code in ('P01', 'P02'):
+        shutil.rmtree(kept / code)
+    export_study(tmp_path / 'out', tmp_path / 'tables')
+    texts = [path.read_bytes() for path in (tmp_path / 'tables').rglob('*.*')]
+    assert [text for text in texts if b'P01' in text or b'P02' in text] == []
+    assert any(b'P03' in text for text in texts)
