@@ -72,6 +72,7 @@ setup(
             'py.typed',
             'analysis/paper.yaml',
             'analysis/templates/*.html',
+            'view/study/static/*',
             'view/web/static/*',
         ]
     },
@@ -98,6 +99,7 @@ setup(
         **EXTRAS,
         'all': sorted(name for names in EXTRAS.values() for name in names),
         'test': [
+            'axe-playwright-python>=0.1.4',
             'hypothesis>=6.98',
             'mcap-ros2-support>=0.6',
             'playwright>=1.40',

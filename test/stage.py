@@ -9,6 +9,7 @@ from typing import Any
 from blocks_planning.errors import InvalidInput
 from blocks_planning.search.result import Problem
 from blocks_planning.search.solve import solve
+from blocks_planning.subgoals.drawn import Refused
 from blocks_planning.trials import scribe, searcher, selector, world
 from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.messages import (
@@ -26,7 +27,7 @@ from blocks_planning.view.web.frame import Seen
 from blocks_planning.view.web.guards import Address
 from blocks_planning.view.web.health import NOTHING, Health
 from blocks_planning.view.web.live import Mailbox
-from blocks_planning.view.web.proposing import Refused, judge, parse
+from blocks_planning.view.web.proposing import judge, parse
 from blocks_planning.view.web.queue import Queue
 from blocks_planning.view.web.server import PageServer
 from blocks_planning.view.web.session import Session, session_after, with_told_again

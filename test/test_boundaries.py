@@ -2,7 +2,7 @@
 
 ::
 
-    cli  ->  ros  ->  view | experiments | analysis | robot  ->  fitting  ->  people | towers
+    cli  ->  ros  ->  view | experiments | analysis | robot  ->  fitting  ->  people | study | towers
          ->  trials  ->  worlds  ->  subgoals  ->  search  ->  board  ->  families
          ->  extras | located | resources | settings  ->  errors
 """
@@ -23,7 +23,7 @@ LAYERS = [
     {'subgoals'},
     {'worlds'},
     {'trials'},
-    {'people', 'towers'},
+    {'people', 'study', 'towers'},
     {'fitting'},
     {'view', 'experiments', 'analysis', 'robot'},
     {'ros'},

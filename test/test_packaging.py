@@ -229,7 +229,7 @@ def test_all_of_the_package_is_installed(prefix: Path) -> None:
     there = {path.relative_to(init.parent) for path in init.parent.rglob('*')}
     package = ROOT / PACKAGE
     here = {path.relative_to(package) for path in package.rglob('*.py')} | {Path('py.typed')}
-    here |= {path.relative_to(package) for path in package.glob('view/web/static/*')}
+    here |= {path.relative_to(package) for path in package.glob('view/*/static/*')}
     assert here - there == set()
 
 

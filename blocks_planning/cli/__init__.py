@@ -21,6 +21,7 @@ from blocks_planning.cli.progress import LIMIT_REACHED
 from blocks_planning.cli.reproducing import exact_policy, growth, reproduce
 from blocks_planning.cli.running import solve, watch
 from blocks_planning.cli.stimuli import stimuli
+from blocks_planning.cli.study import study
 from blocks_planning.cli.sweeping import sweep
 from blocks_planning.cli.uncertainty import uncertain
 from blocks_planning.errors import BlocksPlanningError, LimitExceeded
@@ -57,6 +58,7 @@ for command in (
     growth,
     uncertain,
     fit,
+    study,
 ):
     commands.add_command(command)
 

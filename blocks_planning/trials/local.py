@@ -27,6 +27,66 @@ MOST_AT_ONCE = 1024
 _PARTS = (world, selector, searcher, scribe)
 
 
+class LocalTrial:
+    """A trial that goes on until it ends, or waits for a person.
+
+    Attributes:
+        spec: the trial.
+    """
+
+    def __init__(
+        self,
+        spec: TrialSpec,
+        cancel: CancelToken | None = None,
+        observe: Callable[[Message], None] | None = None,
+    ) -> None:
+        """Prepare; the first :meth:`say` is that of the :class:`TrialStarted`.
+
+        Args:
+            spec: the trial.
+            cancel: ends it, from another thread, with status ``cancelled``.
+            observe: called with every message before the parts receive it.
+        """
+        self.spec = spec
+        self._cancel = cancel or CancelToken()
+        self._observe = observe
+        self._memories: list[Any] = [part.Memory() for part in _PARTS]
+
+    @property
+    def waits(self) -> bool:
+        """Whether it has begun, has not ended and goes on with a proposal of a person."""
+        memory: scribe.Memory = self._memories[-1]
+        building = memory.trial is not None and memory.status is TrialStatus.BUILDING
+        return building and self.spec.strategy.asks_person
+
+    def record(self) -> TrialRecord:
+        """The record so far; the trial must have begun."""
+        record: TrialRecord = self._memories[-1].record()
+        return record
+
+    def say(self, message: Message) -> None:
+        """Pass a message to the parts, and all messages that follow from it."""
+        questions: list[Solve] = []
+        messages: deque[Message] = deque([message])
+        cancelling = isinstance(message, CancelTrial)
+        while messages:
+            message = messages.popleft()
+            if self._observe is not None:
+                self._observe(message)
+            if isinstance(message, Solve):
+                questions.append(message)
+                more = bool(messages) and isinstance(messages[0], Solve)
+                if not more or len(questions) == MOST_AT_ONCE:
+                    messages.extend(_answers(self.spec, questions, self._cancel))
+                    questions = []
+            for index, part in enumerate(_PARTS):
+                self._memories[index], said = part.step(self._memories[index], message)
+                messages.extend(said)
+            if self._cancel.cancelled and not cancelling:
+                cancelling, questions = True, []
+                messages = deque([CancelTrial(self.spec.trial_id)])
+
+
 def run_trial(
     spec: TrialSpec,
     cancel: CancelToken | None = None,
@@ -37,41 +97,17 @@ def run_trial(
 
     Args:
         spec: the trial.
-        cancel: ends it, from another thread, with status ``cancelled``.
-        observe: called with every message before the parts receive it.
+        cancel: see :class:`LocalTrial`.
+        observe: see :class:`LocalTrial`.
         proposals: of a person, one for each turn. A trial that needs more proposals ends with
             status ``cancelled``.
     """
-    cancel = cancel or CancelToken()
-    questions: list[Solve] = []
-    memories: list[Any] = [part.Memory() for part in _PARTS]
-    messages: deque[Message] = deque([TrialStarted(spec.trial_id, spec)])
-    cancelling = False
+    trial = LocalTrial(spec, cancel, observe)
     proposed = iter(proposals)
-    while messages:
-        message = messages.popleft()
-        if observe is not None:
-            observe(message)
-        if isinstance(message, Solve):
-            questions.append(message)
-            more = bool(messages) and isinstance(messages[0], Solve)
-            if not more or len(questions) == MOST_AT_ONCE:
-                messages.extend(_answers(spec, questions, cancel))
-                questions = []
-        for index, part in enumerate(_PARTS):
-            memories[index], said = part.step(memories[index], message)
-            messages.extend(said)
-        if cancel.cancelled and not cancelling:
-            cancelling, questions = True, []
-            messages = deque([CancelTrial(spec.trial_id)])
-        if not messages and spec.strategy.asks_person and _is_building(memories[-1]):
-            messages.append(_next_proposal(spec.trial_id, proposed))
-    record: TrialRecord = memories[-1].record()
-    return record
-
-
-def _is_building(memory: scribe.Memory) -> bool:
-    return memory.trial is not None and memory.status is TrialStatus.BUILDING
+    trial.say(TrialStarted(spec.trial_id, spec))
+    while trial.waits:
+        trial.say(_next_proposal(spec.trial_id, proposed))
+    return trial.record()
 
 
 def _next_proposal(trial_id: str, proposals: Iterator[Proposal]) -> Message:

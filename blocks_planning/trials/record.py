@@ -142,7 +142,7 @@ class TrialRecord:
             'placements': _blocks_to_json(self.placements),
             'observations': [_observation_to_json(seen) for seen in self.observations],
             'decisions': [_decision_to_json(entry) for entry in self.decisions],
-            'proposals': [_proposal_to_json(proposal) for proposal in self.proposals],
+            'proposals': [proposal_to_json(proposal) for proposal in self.proposals],
         }
 
     def summary(self) -> dict[str, Any]:
@@ -231,7 +231,8 @@ def _subgoal_to_json(subgoal: Subgoal, regions: dict[Region, int]) -> dict[str, 
     }
 
 
-def _proposal_to_json(proposal: Proposal) -> dict[str, Any]:
+def proposal_to_json(proposal: Proposal) -> dict[str, Any]:
+    """A proposal as data; its region is a hexadecimal mask."""
     return {
         'sequence': proposal.sequence,
         'number': proposal.number,

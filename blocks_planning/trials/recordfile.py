@@ -7,56 +7,34 @@ from pathlib import Path
 
 from blocks_planning.errors import RecordError
 from blocks_planning.trials import disk
+from blocks_planning.trials.linefile import LineFile
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.status import TrialStatus
 
 
 class RecordFile:
-    """A file of trial records that stays valid when the writing process is interrupted.
+    """A file of trial records; see :class:`LineFile`.
 
-    A record is on disk when :meth:`append` returns. An incomplete last line of an interrupted
-    writer is moved to a separate file, never deleted. The file is locked for other writers.
+    Attributes:
+        finished: ids of the trials in it that came to their own end.
     """
 
     def __init__(self, path: Path, wait_s: float = disk.LOCK_WAIT_S) -> None:
-        """Open or make the file.
-
-        Args:
-            path: of the file; its folder is made.
-            wait_s: how long to wait for another process that writes it [s].
+        """Open or make the file; see :class:`LineFile`.
 
         Raises:
-            RecordError: if it can't be written, a line is not a record, or another process is
-                still writing it.
+            RecordError: also if a line is not a record.
         """
-        self._path = path
         self.finished: set[str] = set()
+        self._file = LineFile(path, wait_s)
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = path.open('ab+', buffering=0)
-        except OSError as error:
-            raise RecordError(f'{path}: cannot be written: {error.strerror}') from None
-        try:
-            disk.lock(self._file.fileno(), path, wait_s)
-            self._file.seek(0)
-            self._read(self._file.read())
+            for number, line in enumerate(self._file.lines(), start=1):
+                trial_id, is_finished = _read(line, f'{path}, line {number}')
+                if is_finished:
+                    self.finished.add(trial_id)
         except RecordError:
-            self._file.close()
+            self.close()
             raise
-        except OSError as error:
-            self._file.close()
-            raise RecordError(f'{path}: cannot be written: {error.strerror}') from None
-
-    def _read(self, data: bytes) -> None:
-        whole, _, torn = data.rpartition(b'\n')
-        if torn:
-            with self._path.with_suffix('.torn').open('ab') as aside:
-                aside.write(torn + b'\n')
-            self._file.truncate(len(data) - len(torn))
-        for number, line in enumerate(whole.split(b'\n') if whole else [], start=1):
-            trial_id, is_finished = _read(line, f'{self._path}, line {number}')
-            if is_finished:
-                self.finished.add(trial_id)
 
     def append(self, record: TrialRecord) -> None:
         """Write a record, and return when it is on disk.
@@ -64,11 +42,7 @@ class RecordFile:
         Raises:
             RecordError: if it cannot be written; the file is then unchanged.
         """
-        line = record.to_line().encode() + b'\n'
-        try:
-            disk.append(self._file.fileno(), line, sync=True)
-        except OSError as error:
-            raise RecordError(f'{self._path}: cannot be written: {error.strerror}') from None
+        self._file.append(record.to_line().encode())
         if record.status is not TrialStatus.CANCELLED:
             self.finished.add(record.spec.trial_id)
 

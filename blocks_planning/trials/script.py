@@ -163,11 +163,20 @@ def _read_pause(top: Mapping[str, Located]) -> float:
 
 def read_towers(top: Mapping[str, Located]) -> list[Tower]:
     """The towers of the keys ``stimuli`` and ``library``."""
-    library = PAPER_LIBRARY
-    if 'library' in top:
-        blocks = read_text(top['library'])
-        library = top['library'].check(lambda: parse_library(blocks))
-    return [tower for address in top['stimuli'].items() for tower in _towers(address, library)]
+    return list_towers(top['stimuli'], read_library(top))
+
+
+def read_library(top: Mapping[str, Located]) -> Library:
+    """The blocks of the key ``library``; the paper's if it is left out."""
+    if 'library' not in top:
+        return PAPER_LIBRARY
+    blocks = read_text(top['library'])
+    return top['library'].check(lambda: parse_library(blocks))
+
+
+def list_towers(listed: Located, library: Library) -> list[Tower]:
+    """The towers of a list of addresses."""
+    return [tower for address in listed.items() for tower in _towers(address, library)]
 
 
 def read_seeds(top: Mapping[str, Located]) -> tuple[int, ...]:

@@ -34,6 +34,7 @@ from blocks_planning.ros.runtime.processes import PARENT_VARIABLE
 from blocks_planning.ros.wire import qos
 from blocks_planning.ros.wire.graph import TRIAL_VIEW
 from blocks_planning.ros.wire.topics import SEARCH_RESULT, Topic
+from blocks_planning.subgoals.drawn import Refused
 from blocks_planning.trials.messages import Message
 from blocks_planning.trials.script import read_script
 from blocks_planning.trials.spec import TrialSpec
@@ -42,7 +43,7 @@ from blocks_planning.view.web import session
 from blocks_planning.view.web.frame import Seen
 from blocks_planning.view.web.guards import address_of
 from blocks_planning.view.web.health import NOTHING, health_after
-from blocks_planning.view.web.proposing import Posted, Refused, judge, parse
+from blocks_planning.view.web.proposing import Posted, judge, parse
 from blocks_planning.view.web.queue import Queue
 
 HOST = Parameter(

@@ -44,6 +44,7 @@ class Address:
         host: host name or IP address to listen on.
         port: port to listen on; 0 before it is known.
         token: access token that every browser must present; '' for none.
+        page: path of the page below the host, without '/'.
 
     Raises:
         ConfigurationError: if the token is too short, or is missing for an address other than the
@@ -53,6 +54,7 @@ class Address:
     host: str = '127.0.0.1'
     port: int = 0
     token: str = ''
+    page: str = ''
 
     def __post_init__(self) -> None:
         if self.token and (len(self.token) < LEAST_TOKEN or not _is_plain(self.token)):
@@ -73,13 +75,13 @@ class Address:
     @property
     def url(self) -> str:
         """The URL to open in a browser, with the token."""
-        place = f'http://{_bracketed(_shown_host(self.host))}:{self.port}/'
+        place = f'http://{_bracketed(_shown_host(self.host))}:{self.port}/{self.page}'
         return f'{place}?token={self.token}' if self.token else place
 
     @property
     def cookie(self) -> str:
         """Name of the cookie that holds the token; the ports of a host share their cookies."""
-        return f'blocks_planning_{self.port}'
+        return '_'.join(filter(None, ['blocks_planning', str(self.port), self.page]))
 
     def is_host(self, header: str | None) -> bool:
         """Whether a Host header names this server.
@@ -111,7 +113,7 @@ class Address:
 def address_of(host: str, port: int, token: str = '') -> Address:
     """An address, with a new token if one is required and none is given."""
     if not token and not is_loopback(host):
-        token = secrets.token_urlsafe(32)
+        token = new_token()
     return Address(host, port, token)
 
 
@@ -123,6 +125,11 @@ def is_loopback(host: str) -> bool:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
         return False
+
+
+def new_token() -> str:
+    """A token that nobody guesses."""
+    return secrets.token_urlsafe(32)
 
 
 def is_same_origin(origin: str | None, host: str | None) -> bool:

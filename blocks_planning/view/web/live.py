@@ -12,6 +12,7 @@ import time
 from blocks_planning.extras import extra
 from blocks_planning.view.web.frame import Seen, frame_json, hides_costs
 from blocks_planning.view.web.pictures import replay_json, summary_json
+from blocks_planning.view.web.serving import FAREWELL_S
 
 with extra('page'):
     from aiohttp import WSMsgType, web
@@ -22,8 +23,6 @@ QUIET_S = 1.0
 """Period of frames if nothing has changed [s]."""
 FAREWELL_REPLAYS = 20
 """Number of replays that a browser gets at the end, as it cannot fetch them later."""
-FAREWELL_S = 0.25
-"""Time limit for sending them [s]."""
 
 
 class Mailbox:

@@ -4,36 +4,20 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from blocks_planning.board.geometry import EMPTY, FILLED, Board, Mask
-from blocks_planning.board.task import Task
-from blocks_planning.errors import ConfigurationError, InvalidInput, shown
-from blocks_planning.subgoals.proposals import (
-    MOST_PROPOSALS,
-    Proposal,
-    ProposalKind,
-    is_filled,
+from blocks_planning.board.geometry import Board
+from blocks_planning.errors import ConfigurationError, shown
+from blocks_planning.subgoals.drawn import (
+    MalformedProposal,
+    Refused,
+    judge_region,
+    parse_region,
 )
+from blocks_planning.subgoals.proposals import MOST_PROPOSALS, Proposal, ProposalKind
 from blocks_planning.trials.messages import ProposalMade
 from blocks_planning.view.web.session import Session, turn_of
 from blocks_planning.worlds.observation import MAX_OBSERVATIONS
 
 _KEYS = {'trial_id', 'sequence', 'number', 'kind', 'region', 'thinking_s'}
-
-
-class MalformedProposal(InvalidInput):
-    """The data from the page is not a proposal."""
-
-
-class Refused(NamedTuple):
-    """A proposal that cannot be accepted.
-
-    Attributes:
-        code: a word for programs: stale, waiting, empty, outside, built.
-        reason: a sentence for people.
-    """
-
-    code: str
-    reason: str
 
 
 class Posted(NamedTuple):
@@ -70,7 +54,7 @@ def parse(data: object, board: Board) -> Posted:
             sequence=_whole(data, 'sequence', MAX_OBSERVATIONS),
             number=_whole(data, 'number', MOST_PROPOSALS - 1),
             kind=ProposalKind(data['kind']),
-            region=_region(data['region'], board),
+            region=parse_region(data['region'], board),
             thinking_s=float(seconds),
         )
     except (ConfigurationError, OverflowError):
@@ -85,19 +69,6 @@ def _whole(data: dict[str, Any], key: str, most: int) -> int:
     if type(value) is not int or not 0 <= value <= most:
         raise MalformedProposal(f'{key}: expected a number from 0 to {most}, got {shown(value)}')
     return value
-
-
-def _region(rows: object, board: Board) -> Mask:
-    if (
-        not isinstance(rows, list)
-        or len(rows) != board.height
-        or not all(isinstance(row, str) and len(row) == board.width for row in rows)
-        or set().union(*rows) - {FILLED, EMPTY}
-    ):
-        raise MalformedProposal(
-            f'region: expected {board.height} rows of {board.width} cells, each # or .'
-        )
-    return board.parse(rows)
 
 
 def judge(session: Session, posted: Posted) -> Refused | None:
@@ -117,15 +88,4 @@ def judge(session: Session, posted: Posted) -> Refused | None:
         return Refused('waiting', 'the search for the last region is still running')
     if proposal.kind is ProposalKind.BUILD:
         return judge_region(session.scene.task, turn.built, proposal.region)
-    return None
-
-
-def judge_region(task: Task, built: Mask, region: Mask) -> Refused | None:
-    """The reason why there is nothing to fill in a region of the board; None if there is."""
-    if not region:
-        return Refused('empty', 'nothing is drawn')
-    if not region & task.silhouette:
-        return Refused('outside', 'the region is outside the silhouette')
-    if is_filled(task, built, region):
-        return Refused('built', 'the region is built already')
     return None

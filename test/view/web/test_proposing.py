@@ -9,17 +9,12 @@ from typing import Any
 import pytest
 from builders import CHAIR, task
 
+from blocks_planning.subgoals.drawn import MalformedProposal, Refused, judge_region
 from blocks_planning.subgoals.proposals import ProposalKind, target_of
 from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.messages import ProposalMade
 from blocks_planning.view.web.pictures import rows_of
-from blocks_planning.view.web.proposing import (
-    MalformedProposal,
-    Refused,
-    judge,
-    judge_region,
-    parse,
-)
+from blocks_planning.view.web.proposing import judge, parse
 from blocks_planning.view.web.session import Session, session_after
 
 from .conftest import Heard

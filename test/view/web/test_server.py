@@ -18,13 +18,14 @@ import pytest
 from aiohttp import ClientSession, WSMsgType, WSServerHandshakeError
 
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.subgoals.drawn import MalformedProposal, Refused
 from blocks_planning.view.web import live
 from blocks_planning.view.web import server as module
 from blocks_planning.view.web.frame import Seen, frame_json
 from blocks_planning.view.web.guards import HEADERS, Address, address_of
 from blocks_planning.view.web.live import Mailbox
-from blocks_planning.view.web.proposing import MalformedProposal, Refused
 from blocks_planning.view.web.server import PageServer
+from blocks_planning.view.web.serving import MOST_BYTES
 from blocks_planning.view.web.session import Session, session_after
 
 from .conftest import Heard
@@ -385,7 +386,7 @@ def test_nonsense_is_refused(served: Served, body: str) -> None:
 
 
 def test_size_is_limited(served: Served) -> None:
-    large = {'padding': 'x' * module.MOST_BYTES}
+    large = {'padding': 'x' * MOST_BYTES}
     assert post(served, large)[0] == 413
     assert served.proposed == []
 

@@ -1,0 +1,150 @@
+"""How a participant's session stands: folded from its events, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+from blocks_planning.study.events import Event, EventKind, proposal_of
+from blocks_planning.study.plan import Step, StepKind
+from blocks_planning.subgoals.drawn import Refused
+from blocks_planning.subgoals.proposals import Proposal
+
+
+class Status(str, Enum):
+    """How far a participant is."""
+
+    RUNNING = 'running'
+    FINISHED = 'finished'
+    """To the end of the last step."""
+    STOPPED = 'stopped'
+    """Stopped taking part."""
+    DECLINED = 'declined'
+    """Did not agree to take part."""
+
+
+@dataclass(frozen=True)
+class State:
+    """How a session stands.
+
+    Attributes:
+        step: of the participant's steps, from 0; their number when the session is over.
+        acts: what the participant has done so far, in number.
+        status: how far the participant is.
+        is_closed: whether the experimenter closed the session.
+        is_present: whether the participant's page is connected.
+        is_begun: whether this step's trial has begun.
+        proposals: in it.
+        is_timed_out: whether the time limit of this step's trial was reached.
+        is_ended: whether this step's trial has ended.
+        shown_s: for how long this step was shown, before ``since_s`` [s].
+        since_s: since when it has been shown, on the steady clock [s]; None: it is not.
+        last: the last event.
+    """
+
+    step: int = 0
+    acts: int = 0
+    status: Status = Status.RUNNING
+    is_closed: bool = False
+    is_present: bool = False
+    is_begun: bool = False
+    proposals: tuple[Proposal, ...] = ()
+    is_timed_out: bool = False
+    is_ended: bool = False
+    shown_s: float = 0.0
+    since_s: float | None = None
+    last: Event | None = None
+
+    def on_step_s(self, steady_s: float) -> float:
+        """For how long this step has been shown, at a time of the steady clock [s]."""
+        return self.shown_s + (0.0 if self.since_s is None else max(0.0, steady_s - self.since_s))
+
+
+def state_after(state: State, event: Event, steps: Sequence[Step]) -> State:
+    """The state after an event."""
+    state = _after(state, event, steps)
+    return replace(state, last=event)
+
+
+def _after(state: State, event: Event, steps: Sequence[Step]) -> State:
+    done = replace(state, acts=state.acts + 1)
+    match event.kind:
+        case EventKind.OPENED:
+            # What interrupted the session before has no event of its own.
+            last_s = state.last.steady_s if state.last else 0.0
+            return replace(_away(state, last_s), is_closed=False)
+        case EventKind.ARRIVED:
+            return replace(_away(state, event.steady_s), is_present=True, since_s=event.steady_s)
+        case EventKind.LEFT:
+            return _away(state, event.steady_s)
+        case EventKind.CLOSED:
+            return replace(_away(state, event.steady_s), is_closed=True)
+        case EventKind.AGREED | EventKind.WENT_ON:
+            return _at(done, state.step + 1, event)
+        case EventKind.FINISHED:
+            is_first = state.status is Status.RUNNING
+            over = _at(done, len(steps), event)
+            return replace(over, status=Status.FINISHED) if is_first else over
+        case EventKind.DECLINED:
+            return replace(_at(done, len(steps), event), status=Status.DECLINED)
+        case EventKind.STOPPED:
+            return replace(_at(done, len(steps) - 1, event), status=Status.STOPPED)
+        case EventKind.BEGAN:
+            return replace(state, is_begun=True)
+        case EventKind.PROPOSED:
+            return replace(done, proposals=(*state.proposals, proposal_of(event)))
+        case EventKind.TIMED_OUT:
+            return replace(state, is_timed_out=True)
+        case EventKind.ENDED:
+            return replace(state, is_ended=True)
+    return state
+
+
+def _away(state: State, steady_s: float) -> State:
+    """The step is not shown any more, since a time."""
+    return replace(state, is_present=False, shown_s=state.on_step_s(steady_s), since_s=None)
+
+
+def _at(state: State, step: int, event: Event) -> State:
+    """At the beginning of a step."""
+    return replace(
+        state,
+        step=step,
+        is_begun=False,
+        proposals=(),
+        is_timed_out=False,
+        is_ended=False,
+        shown_s=0.0,
+        since_s=event.steady_s if state.is_present else None,
+    )
+
+
+_GO_ON = {'next': EventKind.WENT_ON}
+_ACTS = {
+    StepKind.CONSENT: {'agree': EventKind.AGREED, 'decline': EventKind.DECLINED},
+    StepKind.TEXT: _GO_ON,
+    StepKind.BREAK: _GO_ON,
+    StepKind.DEBRIEF: {'next': EventKind.FINISHED},
+}
+
+
+def judge(state: State, steps: Sequence[Step], word: str) -> EventKind | Refused:
+    """What becomes of a participant's word in a state, apart from what its trial says.
+
+    Args:
+        state: of the session.
+        steps: of the participant.
+        word: 'agree', 'decline', 'next' and 'stop'; any other is for the trial.
+    """
+    if state.is_closed or state.step >= len(steps):
+        return Refused('over', 'the session is over')
+    step = steps[state.step]
+    if word == 'stop' and step.kind not in (StepKind.DEBRIEF, StepKind.CONSENT):
+        return EventKind.STOPPED
+    known = _ACTS.get(step.kind, _GO_ON if state.is_ended else {})
+    if word in known:
+        return known[word]
+    if step.trial is not None and not state.is_ended and word in step.trial.condition.mode.wishes:
+        return EventKind.PROPOSED
+    return Refused('stale', 'this is not asked for now')

@@ -1,0 +1,247 @@
+"""A participant's session: what comes from the page becomes events, and then happens.
+
+An event is kept first. If the disk does not take it, nothing has happened, and the page says so.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from blocks_planning.errors import shown
+from blocks_planning.study.events import EventKind, Moment, event_of
+from blocks_planning.study.log import Log
+from blocks_planning.study.machine import State, judge, state_after
+from blocks_planning.study.modes import Fields
+from blocks_planning.study.notes import read_note, read_seconds
+from blocks_planning.study.plan import Step, Trial
+from blocks_planning.subgoals.drawn import MalformedProposal, Refused
+from blocks_planning.subgoals.proposals import (
+    MOST_PROPOSALS,
+    Proposal,
+    proposed_at,
+)
+from blocks_planning.trials.local import LocalTrial
+from blocks_planning.trials.messages import CancelTrial, ProposalMade, TrialStarted
+from blocks_planning.trials.record import TrialRecord, proposal_to_json
+from blocks_planning.trials.status import TrialStatus
+
+STOPPED = 'the participant stopped taking part'
+
+
+def now() -> Moment:
+    """The moment that is now."""
+    return Moment(time.time(), time.monotonic())
+
+
+class Participant(NamedTuple):
+    """Who takes part: a code, a number in the study from 0, and the study."""
+
+    code: str
+    number: int
+    study_id: str
+
+
+class _Running(NamedTuple):
+    """The trial of a step, as it is planned and as it runs."""
+
+    trial: Trial
+    local: LocalTrial
+
+    def time_out(self) -> None:
+        """End it, because its time is over."""
+        reason = f'time limit of {self.trial.condition.time_limit_s} s'
+        self.local.say(CancelTrial(self.trial.spec.trial_id, reason))
+
+
+class Session:
+    """The session of a participant.
+
+    Attributes:
+        participant: whose it is.
+        steps: of the participant.
+        state: how it stands.
+    """
+
+    def __init__(
+        self,
+        participant: Participant,
+        steps: Sequence[Step],
+        log: Log,
+        clock: Callable[[], Moment] = now,
+    ) -> None:
+        """Open it, where its log ends.
+
+        Raises:
+            RecordError: if the log can't be read or written.
+        """
+        self.participant = participant
+        self.steps = steps
+        self.state = State()
+        self._log = log
+        self._clock = clock
+        for event in log.events():
+            self.state = state_after(self.state, event, steps)
+        self._running = self._run()
+        named = {'participant': participant.code, 'number': participant.number}
+        self._keep(EventKind.OPENED, {'study_id': participant.study_id, **named})
+        self._settle()
+
+    @property
+    def step(self) -> Step | None:
+        """The step that the participant is at; None: the session is over."""
+        return self.steps[self.state.step] if self.state.step < len(self.steps) else None
+
+    @property
+    def record(self) -> TrialRecord | None:
+        """The record so far of the trial of this step; None if it is none."""
+        return None if self._running is None else self._running.local.record()
+
+    @property
+    def shown_s(self) -> float:
+        """For how long this step has been shown [s]."""
+        return self.state.on_step_s(self._clock().steady_s)
+
+    @property
+    def left_s(self) -> float | None:
+        """Time that is left for the trial that runs [s]; None if it is not limited."""
+        trial = self.step.trial if self.step else None
+        if trial is None or not trial.condition.time_limit_s or self.state.is_ended:
+            return None
+        return max(0.0, trial.condition.time_limit_s - self.shown_s)
+
+    def act(self, fields: Fields) -> Refused | None:
+        """Do what the participant wants.
+
+        Args:
+            fields: ``act``, the word; ``number``, how many acts there were before it; ``step``, to
+                which it refers; and what a trial needs to know. A repeated act changes nothing.
+
+        Returns:
+            Why it cannot be had; None if it can.
+
+        Raises:
+            MalformedProposal: if the fields are not those of an act.
+            RecordError: if it could not be kept; then nothing has happened.
+        """
+        self._settle()
+        word, number, step = (fields.get(key) for key in ('act', 'number', 'step'))
+        if not isinstance(word, str) or type(number) is not int or type(step) is not int:
+            raise MalformedProposal(f'expected act, number and step, got {shown(dict(fields))}')
+        if number == self.state.acts - 1:
+            return None
+        if (number, step) != (self.state.acts, self.state.step):
+            return Refused('stale', 'the page is not up to date')
+        kind = judge(self.state, self.steps, word)
+        if isinstance(kind, Refused):
+            return kind
+        if kind is EventKind.PROPOSED and self._running is not None:
+            return self._propose(self._running, word, fields)
+        self._keep(kind, self._cut_short(kind))
+        self._running = self._run()
+        self._settle()
+        return None
+
+    def note(self, fields: Fields) -> None:
+        """Keep what the page tells of itself; notes of another step are dropped.
+
+        Raises:
+            MalformedProposal: if it is no note.
+            RecordError: if it could not be kept.
+        """
+        board = None if self._running is None else self._running.trial.spec.task.board
+        if fields.get('step') == self.state.step:
+            kind, data = read_note(fields, board)
+            self._keep(kind, data)
+
+    def arrive(self) -> None:
+        """The page is connected."""
+        self._settle()
+        self._keep(EventKind.ARRIVED)
+
+    def leave(self) -> None:
+        """The page is gone."""
+        if self.state.is_present:
+            self._keep(EventKind.LEFT)
+
+    def tick(self) -> bool:
+        """End the trial if its time is over; return whether it was."""
+        self._settle()
+        if self.left_s != 0.0 or self._running is None:
+            return False
+        if not self.state.is_timed_out:
+            self._keep(EventKind.TIMED_OUT)
+        self._running.time_out()
+        self._settle()
+        return True
+
+    def close(self) -> None:
+        """The experimenter closes the session; it can be opened again."""
+        if self.step is not None:
+            self._keep(EventKind.CLOSED)
+        self.release()
+
+    def release(self) -> None:
+        """Let the log go; nothing more can be kept."""
+        self._log.close()
+
+    def _propose(self, running: _Running, word: str, fields: Fields) -> Refused | None:
+        trial, local = running
+        record = local.record()
+        wish = trial.condition.mode.wishes[word](trial.spec.task, record.built, fields)
+        thinking_s = read_seconds(fields, 'thinking_s')
+        sequence = len(record.observations) - 1
+        number = len(proposed_at(self.state.proposals, sequence))
+        refused = wish.refused
+        if number >= MOST_PROPOSALS:
+            refused = Refused('many', 'this was tried too often')
+        if refused is not None:
+            data = {'wish': word, 'code': refused.code, 'region': hex(wish.region)}
+            self._keep(EventKind.REFUSED, data)
+            return refused
+        proposal = Proposal(sequence, number, wish.kind, wish.region, thinking_s)
+        self._keep(EventKind.PROPOSED, proposal_to_json(proposal))
+        local.say(ProposalMade(trial.spec.trial_id, proposal))
+        self._settle()
+        return None
+
+    def _run(self) -> _Running | None:
+        """The trial of this step, as far as it is."""
+        trial = self.step.trial if self.step else None
+        if trial is None:
+            return None
+        local = LocalTrial(trial.spec)
+        local.say(TrialStarted(trial.spec.trial_id, trial.spec))
+        for proposal in self.state.proposals:
+            local.say(ProposalMade(trial.spec.trial_id, proposal))
+        running = _Running(trial, local)
+        if self.state.is_timed_out:
+            running.time_out()
+        return running
+
+    def _settle(self) -> None:
+        """Keep that the trial has begun, or ended, if that is not kept yet."""
+        running = self._running
+        if running is None:
+            return
+        if not self.state.is_begun:
+            self._keep(EventKind.BEGAN, running.trial.to_json())
+        if not running.local.waits and not self.state.is_ended:
+            self._keep(EventKind.ENDED, {'record': running.local.record().to_json()})
+
+    def _cut_short(self, kind: EventKind) -> dict[str, Any]:
+        """The data of an event that may end a trial."""
+        if kind is not EventKind.STOPPED:
+            return {}
+        if self._running is None or not self._running.local.waits:
+            return {'record': None}
+        record = self._running.local.record()
+        cancelled = replace(record, status=TrialStatus.CANCELLED, reason=STOPPED)
+        return {'record': cancelled.to_json()}
+
+    def _keep(self, kind: EventKind, data: dict[str, Any] | None = None) -> None:
+        event = event_of(kind, self.state.step, self._clock(), data or {})
+        self._log.append(event)
+        self.state = state_after(self.state, event, self.steps)

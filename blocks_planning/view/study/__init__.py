@@ -1,0 +1,1 @@
+"""The pages of a study: the participant's and the experimenter's."""
