@@ -144,6 +144,19 @@ class PlacementCode(IntEnum):
     """The order is being carried out; another outcome follows."""
 
 
+PLACEMENT_REASONS = {
+    PlacementCode.PLACED: 'the block rests where it was ordered',
+    PlacementCode.SLIPPED: 'the block landed elsewhere',
+    PlacementCode.LOST: 'no block landed',
+    PlacementCode.COLLAPSED: 'the tower fell',
+    PlacementCode.IMPOSSIBLE: 'the block would not come to rest inside the board',
+    PlacementCode.FAILED: 'no block can be placed any more',
+    PlacementCode.TRY_AGAIN: 'the order cannot be carried out now',
+    PlacementCode.IN_PROGRESS: 'the order is being carried out',
+}
+"""The usual sentence of each code."""
+
+
 @dataclass(frozen=True)
 class PlacementOutcome:
     """The result of a :class:`PlaceBlock`.
@@ -168,6 +181,11 @@ class PlacementOutcome:
     def failed(self) -> bool:
         """Whether the world can place no block on that state any more."""
         return self.code is PlacementCode.FAILED
+
+    @property
+    def sentence(self) -> str:
+        """Why, in words."""
+        return self.reason or PLACEMENT_REASONS[self.code]
 
 
 @dataclass(frozen=True)

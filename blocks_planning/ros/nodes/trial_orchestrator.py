@@ -4,15 +4,15 @@ With a ``script`` it runs the script's trials in order, leaves out those whose r
 ``trials.jsonl`` already, and ends the process. Without, it waits for goals; one at a time.
 
 A trial that cannot go on ends with status ``cancelled``, and the reason is in its outcome: a node
-is missing for too long, or a disk is full. A script ends with it, with exit code 1; started again
-it goes on with that trial.
+is missing for too long, its world is silent for too long or cannot carry out an order, or a disk is
+full. A script ends with it, with exit code 1; started again it goes on with that trial.
 
 | | |
 |---|---|
-| listens | `state`, `subgoal` (latched), `action/outcome` (stream) |
+| listens | `state`, `subgoal` (latched), `action`, `action/outcome` (stream) |
 | says | `trial`, `outcome` (latched) |
 | action | `run_trial`: feedback with every state and subgoal; cancelling ends the trial |
-| parameters | `remind_period_s`; `frame_id`; `script`; `participant`: code of the person who scopes; `out_dir`: where `trials.jsonl` is; `wait_for`: nodes that must be present; `peer_timeout_s`: how long it waits for them, before a trial and during it |
+| parameters | `remind_period_s`; `frame_id`; `script`; `participant`: code of the person who scopes; `out_dir`: where `trials.jsonl` is; `wait_for`: nodes that must be present; `peer_timeout_s`: how long it waits for them, before a trial and during it; `placing_timeout_s`: how long the world may be silent; `retries`: how often an order is given again |
 """
 
 from __future__ import annotations
@@ -24,16 +24,17 @@ from typing import Any
 
 from blocks_planning_msgs.action import RunTrial
 
-from blocks_planning.errors import RecordError
+from blocks_planning.errors import InvalidInput, RecordError
 from blocks_planning.ros.runtime.attendance import Attendance
 from blocks_planning.ros.runtime.diagnostics import Health
 from blocks_planning.ros.runtime.goals import GoalServer
 from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import PartNode
+from blocks_planning.ros.runtime.patience import Patience
 from blocks_planning.ros.runtime.process import run
 from blocks_planning.ros.runtime.scripted import ScriptRun
 from blocks_planning.ros.wire.graph import LISTENERS, TRIAL_ORCHESTRATOR
-from blocks_planning.ros.wire.topics import OUTCOME, STATE, SUBGOAL
+from blocks_planning.ros.wire.topics import OUTCOME, STATE, SUBGOAL, Topic
 from blocks_planning.trials import scribe
 from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.messages import (
@@ -59,7 +60,16 @@ WAIT_FOR = Parameter(
 PEER_TIMEOUT = Parameter(
     'peer_timeout_s', 30.0, 'How long to wait for a missing node [s].', (0.1, 86400.0)
 )
-PARAMETERS = (SCRIPT, PARTICIPANT, OUT_DIR, WAIT_FOR, PEER_TIMEOUT)
+PLACING_TIMEOUT = Parameter(
+    'placing_timeout_s',
+    30.0,
+    'How long the world may be silent when a state or an answer is due [s].',
+    (0.1, 86400.0),
+)
+RETRIES = Parameter(
+    'retries', 10, 'How often an order is given again that the world cannot carry out.', (0, 10**6)
+)
+PARAMETERS = (SCRIPT, PARTICIPANT, OUT_DIR, WAIT_FOR, PEER_TIMEOUT, PLACING_TIMEOUT, RETRIES)
 _FIRST_LOOKS_S = 0.02
 _LOOK_PERIOD_S = 1.0
 
@@ -77,7 +87,8 @@ class TrialOrchestrator(PartNode):
         self._ended = self._failures = 0
         self._trouble = ''
         self._attendance = Attendance()
-        self._began_s = self._now_s()
+        self._patience = Patience(self.values['placing_timeout_s'], self.values['retries'])
+        self._began_s = self.now_s
         self._first_looks = self.create_timer(_FIRST_LOOKS_S, self._look_first, clock=self.steady)
         self.create_timer(_LOOK_PERIOD_S, self._look, clock=self.steady)
         self._goals = GoalServer(self, is_open=lambda: self._script is None)
@@ -96,7 +107,7 @@ class TrialOrchestrator(PartNode):
 
     def start_trial(self, trial_id: str, spec: TrialSpec) -> None:
         """Announce a trial, and follow it."""
-        self._began_s, self._trouble = self._now_s(), ''
+        self._began_s, self._trouble = self.now_s, ''
         self.get_logger().info(
             f'trial {trial_id} begins: {spec.stimulus}, {spec.strategy.name}, '
             f'{spec.search.name}, {spec.world.name}, seed {spec.seed}'
@@ -112,11 +123,27 @@ class TrialOrchestrator(PartNode):
 
     def take(self, message: Message) -> None:
         """See :class:`PartNode`; the client of a goal gets feedback."""
+        reason = self._patience.hear(message, self.now_s)
         before = self.memory
         super().take(message)
         is_news = self.memory is not before and isinstance(message, (WorldState, SubgoalChosen))
         if is_news and self._goals.is_heard:
             self._goals.tell(self._feedback())
+        if reason:
+            self.cancel_trial(reason)
+
+    def refuse_message(self, topic: Topic, error: InvalidInput) -> None:
+        """See :class:`PartNode`."""
+        super().refuse_message(topic, error)
+        if topic is STATE:
+            self._patience.refused(str(error))
+
+    def start_over(self, trial: TrialStarted) -> None:
+        """See :class:`PartNode`; a world may not go back for ever."""
+        super().start_over(trial)
+        reason = self._patience.set_back(self.now_s)
+        if reason:
+            self.cancel_trial(reason)
 
     def _feedback(self) -> RunTrial.Feedback:
         memory, record = self.memory, self.memory.record()
@@ -191,7 +218,7 @@ class TrialOrchestrator(PartNode):
         script.begin()
 
     def _look(self) -> None:
-        """End a trial that has waited too long for a node."""
+        """End a trial that has waited too long for a node, or for what its world has to say."""
         if not self._first_looks.is_canceled():
             return
         # A trial does not need nodes that only record or show.
@@ -200,21 +227,21 @@ class TrialOrchestrator(PartNode):
         if gone:
             bound_s = self.values['peer_timeout_s']
             self.get_logger().warning(f'missing: {", ".join(gone)}; waits {bound_s:g} s')
-        if self._overdue and self.is_busy:
-            self.cancel_trial(self._overdue)
+        if self._attendance.missing:
+            self._patience.excuse(self.now_s)
+        late = self._overdue or self._patience.overdue(self.now_s)
+        if late and self.is_busy:
+            self.cancel_trial(late)
 
     def _note_missing(self, wanted: list[str]) -> list[str]:
         """Note which nodes are missing; return those that have just gone."""
-        return self._attendance.note(self.peers.missing(wanted), self._now_s())
+        return self._attendance.note(self.peers.missing(wanted), self.now_s)
 
     @property
     def _overdue(self) -> str:
         """Nodes that have been missing for too long, as a sentence; or ''."""
         bound_s = self.values['peer_timeout_s']
-        return self._attendance.overdue(self._now_s(), bound_s, self._began_s)
-
-    def _now_s(self) -> float:
-        return float(self.steady.now().nanoseconds / 1e9)
+        return self._attendance.overdue(self.now_s, bound_s, self._began_s)
 
     @property
     def is_busy(self) -> bool:

@@ -3,6 +3,7 @@
 The driver of real hardware can replace it; nothing else has to change. With a ``journal_dir`` a
 world that was killed and restarted continues with the board of the running trial. If an observation
 cannot be written to disk, the order is not executed; the trial ends, and its outcome has the reason.
+While an order is carried out that takes longer than a second, the world says so every second.
 
 | | |
 |---|---|
@@ -36,6 +37,7 @@ from blocks_planning.trials.messages import (
 
 JOURNAL_DIR = Parameter('journal_dir', '', 'Folder of the journal; none: no journal.')
 PLACING = Parameter('placing_s', 0.0, 'How long placing a block takes [s].', (0.0, 3600.0))
+NEWS_PERIOD_S = 1.0
 
 
 class World(PartNode):
@@ -56,6 +58,9 @@ class World(PartNode):
             max(self.values['placing_s'], 1e-3), self._place, clock=self.steady
         )
         self._arm.cancel()
+        self._began_s = 0.0
+        self._news = self.create_timer(NEWS_PERIOD_S, self._tell_progress, clock=self.steady)
+        self._news.cancel()
 
     def advance(self, message: Message) -> tuple[Message, ...]:
         """See :class:`PartNode`; an observation is in the journal before it is published."""
@@ -127,11 +132,23 @@ class World(PartNode):
         if not isinstance(message, PlaceBlock) or self.values['placing_s'] == 0:
             super().receive(message)
         elif self._placing is None or self._placing.trial_id != message.trial_id:
-            self._placing = message
+            self._placing, self._began_s = message, self.now_s
             self._arm.reset()
+            self._news.reset()
+
+    def _tell_progress(self) -> None:
+        action = self._placing
+        if action is None or self.trial is None or action.trial_id != self.trial.trial_id:
+            return
+        progress = min(1.0, (self.now_s - self._began_s) / self.values['placing_s'])
+        code = PlacementCode.IN_PROGRESS
+        self.say(
+            PlacementOutcome(action.trial_id, action.sequence, None, code=code, progress=progress)
+        )
 
     def _place(self) -> None:
         self._arm.cancel()
+        self._news.cancel()
         action, self._placing = self._placing, None
         if action is not None:
             super().receive(action)

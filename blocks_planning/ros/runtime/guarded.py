@@ -51,6 +51,11 @@ class GuardedNode(Node):
         self.steady = Clock(clock_type=ClockType.STEADY_TIME)
         super().__init__(name, **options)
 
+    @property
+    def now_s(self) -> float:
+        """What the steady clock says [s]."""
+        return float(self.steady.now().nanoseconds / 1e9)
+
     def refuse(self, what: str, reason: object) -> None:
         """Count something that is not as it must be, and warn of it if that was not just done."""
         self.refused += 1

@@ -43,7 +43,7 @@ ACTION_SEARCHER = NodeTopics(
     (SEARCH_RESULT, PLAN, ACTION),
 )
 TRIAL_ORCHESTRATOR = NodeTopics(
-    'trial_orchestrator', (STATE, SUBGOAL, ACTION_OUTCOME), (TRIAL, OUTCOME)
+    'trial_orchestrator', (STATE, SUBGOAL, ACTION, ACTION_OUTCOME), (TRIAL, OUTCOME)
 )
 BAG_RECORDER = NodeTopics('bag_recorder', TOPICS, ())
 MARKER_PUBLISHER = NodeTopics('marker_publisher', (TRIAL, STATE, SUBGOAL, OUTCOME), (), (MARKERS,))
