@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from blocks_planning.board.blocks import Placed, Placement
 from blocks_planning.board.geometry import Board, Mask
@@ -189,6 +189,47 @@ class PlacementOutcome:
 
 
 @dataclass(frozen=True)
+class ArmOrder:
+    """An arm has to carry out an order; its :class:`ArmReport` comes back to the world.
+
+    ``placed`` is where the block comes to rest if all goes well.
+    """
+
+    trial_id: str
+    sequence: int
+    placed: Placed
+
+    def report(self, code: PlacementCode, **fields: Any) -> ArmReport:
+        """What became of it."""
+        return ArmReport(self.trial_id, self.sequence, self.placed.placement, code, **fields)
+
+
+@dataclass(frozen=True)
+class ArmReport:
+    """What an arm did.
+
+    Attributes:
+        trial_id: of the trial.
+        sequence: of the state that the order referred to.
+        ordered: what it was to place.
+        code: what became of the order.
+        landed: blocks that stand now and did not before.
+        gone: blocks that stood before and do not now.
+        reason: a sentence that says why, '' for the usual one.
+        progress: of an order that is being carried out, from 0 to 1.
+    """
+
+    trial_id: str
+    sequence: int
+    ordered: Placement
+    code: PlacementCode
+    landed: Blocks = ()
+    gone: Blocks = ()
+    reason: str = ''
+    progress: float = 0.0
+
+
+@dataclass(frozen=True)
 class CancelTrial:
     """End the trial as it stands; ``reason`` is '' if a user asked for it."""
 
@@ -221,5 +262,6 @@ class Remind:
 
 Message: TypeAlias = (
     'TrialStarted | WorldState | SearchRequest | SearchAnswer | SubgoalChosen | Solve | '
-    'ProposalMade | PlanMade | PlaceBlock | PlacementOutcome | CancelTrial | TrialEnded | Remind'
+    'ProposalMade | PlanMade | PlaceBlock | PlacementOutcome | ArmOrder | ArmReport | '
+    'CancelTrial | TrialEnded | Remind'
 )

@@ -13,6 +13,7 @@ from blocks_planning.ros.wire.topics import TOPICS, VIEW_TOPICS, Topic, ViewTopi
 
 PAGE = (ROOT / 'docs' / 'ros.md').read_text(encoding='utf-8')
 MESSAGES = sorted((ROOT / 'msg_defs' / 'msg').glob('*.msg'))
+ACTIONS = sorted((ROOT / 'msg_defs' / 'action').glob('*.action'))
 
 
 def row(first: str) -> list[str]:
@@ -58,8 +59,20 @@ def test_message_is_told_with_every_field_and_its_comment(path: Path) -> None:
     assert [(field, kind, comment.strip()) for field, kind, comment in told] == defined
 
 
-def test_action_is_told() -> None:
-    text = (ROOT / 'msg_defs' / 'action' / 'RunTrial.action').read_text(encoding='utf-8')
-    section = PAGE.split('### RunTrial')[1].split('\n##')[0]
-    for kind, field in re.findall(r'^(\w+) (\w+)', text, re.MULTILINE):
-        assert f'| `{field}` | `{kind}` |' in section
+@pytest.mark.parametrize('path', ACTIONS, ids=lambda path: path.stem)
+def test_action_is_told(path: Path) -> None:
+    parts = zip(
+        ('goal', 'result', 'feedback'),
+        path.read_text(encoding='utf-8').split('\n---\n'),
+        strict=True,
+    )
+    section = PAGE.split(f'### {path.stem} (action)\n')[1].split('\n##')[0]
+    told = re.findall(r'^\| (\w+) \| `(\w+)` \| `([^`]+)` \| ?(.*) ?\|$', section, re.MULTILINE)
+    defined = [
+        (part, field, kind.partition('/')[2] or kind, comment)
+        for part, text in parts
+        for kind, field, comment in re.findall(
+            r'^([\w/\[\]]+) (\w+) *(?:# *(.*))?$', text, re.MULTILINE
+        )
+    ]
+    assert [(*fields, comment.strip()) for *fields, comment in told] == defined
