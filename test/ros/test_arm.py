@@ -203,6 +203,7 @@ def test_world_that_was_killed_asks_for_the_same_order_again(graph: Graph, tmp_p
     trial = Trial(graph, tmp_path, retries=1000)
     trial.node.start_trial(SPEC.trial_id, SPEC)
     graph.spin_until(lambda: arm.orders == 1)
+    assert trial.world._journal is not None
     trial.world._journal.release()
     graph.remove(trial.world)
     journal = Parameter('journal_dir', value=str(tmp_path / 'journal'))

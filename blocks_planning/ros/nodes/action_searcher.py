@@ -8,6 +8,7 @@ graph; searches wait for it.
 |---|---|
 | listens | `trial`, `state`, `subgoal`, `outcome` (latched), `search/request` (stream) |
 | says | `search/result`, `action` (stream), `plan` (latched) |
+| action | `plan_tower`: plans a tower without building it |
 | parameters | `remind_period_s`; `frame_id`; `workers`: searches at once |
 """
 
@@ -23,6 +24,7 @@ from typing import Any, TypeAlias
 from blocks_planning.ros.runtime.diagnostics import Health
 from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import PartNode
+from blocks_planning.ros.runtime.planning import PlanServer
 from blocks_planning.ros.runtime.process import run
 from blocks_planning.ros.wire.graph import ACTION_SEARCHER
 from blocks_planning.search.many import solve_many
@@ -56,6 +58,7 @@ class ActionSearcher(PartNode):
         self.is_compiling = False
         self._may_search = threading.Event()
         self._may_search.set()
+        self._plans = PlanServer(self, self._may_search)
         self._waiting: deque[_Question] = deque()
         self._answers: deque[SearchAnswer | BaseException] = deque()
         self._counting = threading.Lock()
