@@ -189,6 +189,14 @@ class PlacementOutcome:
 
 
 @dataclass(frozen=True)
+class Held:
+    """Orders may be given in states before the one with number ``until``; None: in all."""
+
+    trial_id: str
+    until: int | None = None
+
+
+@dataclass(frozen=True)
 class ArmOrder:
     """An arm has to carry out an order; its :class:`ArmReport` comes back to the world.
 
@@ -263,5 +271,5 @@ class Remind:
 Message: TypeAlias = (
     'TrialStarted | WorldState | SearchRequest | SearchAnswer | SubgoalChosen | Solve | '
     'ProposalMade | PlanMade | PlaceBlock | PlacementOutcome | ArmOrder | ArmReport | '
-    'CancelTrial | TrialEnded | Remind'
+    'Held | CancelTrial | TrialEnded | Remind'
 )

@@ -686,7 +686,8 @@ def test_docstring_names_topics_and_parameters(name: str, make: Callable[..., An
     }
     parameters = re.findall(r'(?:^|; )`(\w+)`', rows['parameters'])
     assert parameters == list(own_parameters(make(name)))
-    assert ('action' in rows) == (name == 'trial_orchestrator')
+    assert ('action' in rows) == (name in ('trial_orchestrator', 'action_searcher'))
+    assert ('services' in rows) == (name == 'trial_orchestrator')
 
 
 def named(row: str) -> dict[str, bool]:

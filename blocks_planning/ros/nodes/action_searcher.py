@@ -6,7 +6,7 @@ graph; searches wait for it.
 
 | | |
 |---|---|
-| listens | `trial`, `state`, `subgoal`, `outcome` (latched), `search/request` (stream) |
+| listens | `trial`, `state`, `subgoal`, `hold`, `outcome` (latched), `search/request` (stream) |
 | says | `search/result`, `action` (stream), `plan` (latched) |
 | action | `plan_tower`: plans a tower without building it |
 | parameters | `remind_period_s`; `frame_id`; `workers`: searches at once |

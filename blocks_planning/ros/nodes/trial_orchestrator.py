@@ -10,8 +10,9 @@ full. A script ends with it, with exit code 1; started again it goes on with tha
 | | |
 |---|---|
 | listens | `state`, `subgoal` (latched), `action`, `action/outcome` (stream) |
-| says | `trial`, `outcome` (latched) |
+| says | `trial`, `hold`, `outcome` (latched) |
 | action | `run_trial`: feedback with every state and subgoal; cancelling ends the trial |
+| services | `pause`, `resume`, `step`: when orders may be given |
 | parameters | `remind_period_s`; `frame_id`; `script`; `participant`: code of the person who scopes; `out_dir`: where `trials.jsonl` is; `wait_for`: nodes that must be present; `peer_timeout_s`: how long it waits for them, before a trial and during it; `placing_timeout_s`: how long the world may be silent; `retries`: how often an order is given again |
 """
 
@@ -28,6 +29,7 @@ from blocks_planning.errors import InvalidInput, RecordError
 from blocks_planning.ros.runtime.attendance import Attendance
 from blocks_planning.ros.runtime.diagnostics import Health
 from blocks_planning.ros.runtime.goals import GoalServer
+from blocks_planning.ros.runtime.holding import Holding, HoldServices
 from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import PartNode
 from blocks_planning.ros.runtime.patience import Patience
@@ -39,6 +41,7 @@ from blocks_planning.trials import scribe
 from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.messages import (
     CancelTrial,
+    Held,
     Message,
     TrialEnded,
     TrialStarted,
@@ -91,6 +94,8 @@ class TrialOrchestrator(PartNode):
         self._began_s = self.now_s
         self._first_looks = self.create_timer(_FIRST_LOOKS_S, self._look_first, clock=self.steady)
         self.create_timer(_LOOK_PERIOD_S, self._look, clock=self.steady)
+        self._holding = Holding()
+        HoldServices(self, self._holding, self._sequence, self._tell_hold)
         self._goals = GoalServer(self, is_open=lambda: self._script is None)
 
     def _read_script(self, path: str) -> ScriptRun | None:
@@ -115,6 +120,17 @@ class TrialOrchestrator(PartNode):
         started = TrialStarted(trial_id, spec)
         self.say(started)
         self.take(started)
+        self._holding.begin()
+        self._tell_hold()
+
+    def _sequence(self) -> int:
+        """Of the latest state; 0 before the first."""
+        state = self.memory.state
+        return state.sequence if self.is_busy and state is not None else 0
+
+    def _tell_hold(self) -> None:
+        if self.trial is not None and self.is_busy:
+            self.say(Held(self.trial.trial_id, self._holding.until))
 
     def cancel_trial(self, reason: str = '') -> None:
         """End the running trial, if there is one; ``reason`` is '' if a user cancelled it."""
@@ -141,6 +157,8 @@ class TrialOrchestrator(PartNode):
     def start_over(self, trial: TrialStarted) -> None:
         """See :class:`PartNode`; a world may not go back for ever."""
         super().start_over(trial)
+        self._holding.begin()
+        self._tell_hold()
         reason = self._patience.set_back(self.now_s)
         if reason:
             self.cancel_trial(reason)
@@ -252,7 +270,11 @@ class TrialOrchestrator(PartNode):
         """See :class:`PartNode`; the peers are those of ``wait_for``."""
         missing = self._attendance.missing
         present = [name for name in self.values['wait_for'] if name not in missing]
-        values = {'trials_ended': self._ended, 'trials_not_rebuilt': self._failures}
+        values = {
+            'trials_ended': self._ended,
+            'trials_not_rebuilt': self._failures,
+            'paused': self._holding.until is not None,
+        }
         health = super().health()
         return replace(
             health,

@@ -9,6 +9,7 @@
 | `subgoal` | the subgoal that comes next, and all decisions so far | latched |
 | `plan` | the placements about to be carried out | latched |
 | `action`, `action/outcome` | a block to drop, and what became of it | stream |
+| `hold` | up to which state orders may be given | latched |
 | `outcome` | how the trial ended; every node stops working on it | latched |
 | `markers` | the tower in space, for viewers only | latched |
 
@@ -25,7 +26,7 @@ from rclpy.qos import QoSProfile
 from visualization_msgs.msg import MarkerArray
 
 from blocks_planning.ros.wire import qos
-from blocks_planning.ros.wire.conversions import board, decisions, proposals, search, trial
+from blocks_planning.ros.wire.conversions import board, decisions, hold, proposals, search, trial
 from blocks_planning.trials import messages as core
 from blocks_planning.trials.execution import SubgoalChosen
 
@@ -123,6 +124,7 @@ ACTION_OUTCOME = Topic(
     board.placement_outcome_to_ros,
     board.placement_outcome_from_ros,
 )
+HOLD = Topic('hold', ros.Hold, core.Held, hold.held_to_ros, hold.held_from_ros, latched=True)
 OUTCOME = Topic(
     'outcome',
     ros.TrialOutcome,
@@ -142,6 +144,7 @@ TOPICS = (
     PLAN,
     ACTION,
     ACTION_OUTCOME,
+    HOLD,
     OUTCOME,
 )
 
