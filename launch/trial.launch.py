@@ -28,6 +28,8 @@ ARGUMENTS = {
     'bag_dir': ('', 'folder in which to record all topics as a bag; empty: no bag'),
     'namespace': ('', 'namespace of all nodes'),
     'peer_timeout_s': ('30.0', 'how long a node may be missing before its trial ends [s]'),
+    'placing_timeout_s': ('30.0', 'how long the world may be silent before its trial ends [s]'),
+    'retries': ('10', 'how often an order is given again that the world cannot carry out'),
     'markers': ('false', 'true: publish the towers for RViz and Foxglove'),
     'view': ('false', 'true: serve the page; trial_view logs its address'),
 }
@@ -53,6 +55,13 @@ def seconds(values, name):
     return number
 
 
+def count(values, name):
+    """An argument as a whole number that is not negative."""
+    if not values[name].isdecimal():
+        raise RuntimeError(f'{name} must be a whole number from 0, got {values[name]!r}')
+    return int(values[name])
+
+
 def parameters_of(values):
     """The nodes to start, each with its parameters.
 
@@ -75,6 +84,8 @@ def parameters_of(values):
         'out_dir': values['out_dir'],
         'wait_for': list(found),
         'peer_timeout_s': seconds(values, 'peer_timeout_s'),
+        'placing_timeout_s': seconds(values, 'placing_timeout_s'),
+        'retries': count(values, 'retries'),
     }
     return found
 

@@ -12,7 +12,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from blocks_planning.ros.wire.topics import TOPICS, Topic
 from blocks_planning.trials.local import run_trial
-from blocks_planning.trials.messages import Message, ProposalMade
+from blocks_planning.trials.messages import Held, Message, ProposalMade
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 
@@ -46,7 +46,7 @@ def said_in_example() -> tuple[list[Message], TrialRecord]:
 @cache
 def examples() -> dict[str, Any]:
     """The longest message of each topic that is said in a trial, by the name of the topic."""
-    messages = list(said_in_example()[0])
+    messages = [*said_in_example()[0], Held(SPEC.trial_id, 3)]
     messages += [message for message in said_in(HUMAN)[0] if isinstance(message, ProposalMade)]
     longest: dict[str, Any] = {}
     for message in messages:

@@ -66,6 +66,21 @@ _LOOK_PERIOD_S = 0.2
     callback=refuse_nan,
     help='Duration of a placement in seconds, to watch the trials.  [default: 0]',
 )
+@click.option(
+    '--placing-timeout',
+    type=click.FloatRange(0.1, 86400),
+    default=30.0,
+    show_default=True,
+    callback=refuse_nan,
+    help='Seconds that the world may be silent when it has to answer, before its trial ends.',
+)
+@click.option(
+    '--retries',
+    type=click.IntRange(0, 10**6),
+    default=10,
+    show_default=True,
+    help='How often an order is given again that the world cannot carry out.',
+)
 @click.option('--view', is_flag=True, help='Serve a web page that shows the trials live.')
 @click.option(
     '--view-host',
@@ -94,6 +109,8 @@ def run(
     namespace: str,
     domain: int | None,
     pace: float,
+    placing_timeout: float,
+    retries: int,
     view: bool,
     view_host: str,
     view_port: int,
@@ -118,7 +135,19 @@ def run(
         import_module('blocks_planning.view.web.server')  # report a missing extra before the start
     draw = _drawing(pictures, len(specs))
     page = (view_host, view_port) if view else None
-    spec = BringupSpec(script, out, bag, namespace, domain, pace, participant, markers, page)
+    spec = BringupSpec(
+        script,
+        out,
+        bag,
+        namespace,
+        domain,
+        placing_s=pace,
+        participant=participant,
+        markers=markers,
+        view=page,
+        placing_timeout_s=placing_timeout,
+        retries=retries,
+    )
     records = RecordFile(spec.records)
     wanted = {trial.trial_id for trial in specs}
     done = len(wanted & records.finished)

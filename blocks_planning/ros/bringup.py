@@ -15,7 +15,12 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
 from blocks_planning.errors import BlocksPlanningError
-from blocks_planning.ros.nodes.trial_orchestrator import RECORDS, WAIT_FOR
+from blocks_planning.ros.nodes.trial_orchestrator import (
+    PLACING_TIMEOUT,
+    RECORDS,
+    RETRIES,
+    WAIT_FOR,
+)
 from blocks_planning.ros.nodes.trial_view import TOKEN_VARIABLE
 from blocks_planning.ros.runtime.domain import Domain
 from blocks_planning.ros.runtime.process import BAD_INPUT
@@ -43,6 +48,8 @@ class BringupSpec:
         participant: code of the person who plans, '' for that of the script.
         markers: whether the tower is shown as markers, for RViz and Foxglove.
         view: host and port of the page, port 0 for a free one; None for no page.
+        placing_timeout_s: how long the world may be silent when it has to answer [s].
+        retries: how often an order is given again that the world cannot carry out.
     """
 
     script: Path
@@ -54,6 +61,8 @@ class BringupSpec:
     participant: str = ''
     markers: bool = False
     view: tuple[str, int] | None = None
+    placing_timeout_s: float = PLACING_TIMEOUT.default
+    retries: int = RETRIES.default
 
     @property
     def records(self) -> Path:
@@ -118,6 +127,8 @@ class Bringup:
                 'participant': repr(self._spec.participant),
                 'out_dir': self._spec.out,
                 'wait_for': f'[{", ".join([*self._names, WATCHER.name])}]',
+                'placing_timeout_s': float(self._spec.placing_timeout_s),
+                'retries': self._spec.retries,
             }
         environment = self._environment
         if name == TRIAL_VIEW.name and self.page is not None:

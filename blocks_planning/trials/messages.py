@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from blocks_planning.board.blocks import Placed, Placement
 from blocks_planning.board.geometry import Board, Mask
@@ -144,6 +144,19 @@ class PlacementCode(IntEnum):
     """The order is being carried out; another outcome follows."""
 
 
+PLACEMENT_REASONS = {
+    PlacementCode.PLACED: 'the block rests where it was ordered',
+    PlacementCode.SLIPPED: 'the block landed elsewhere',
+    PlacementCode.LOST: 'no block landed',
+    PlacementCode.COLLAPSED: 'the tower fell',
+    PlacementCode.IMPOSSIBLE: 'the block would not come to rest inside the board',
+    PlacementCode.FAILED: 'no block can be placed any more',
+    PlacementCode.TRY_AGAIN: 'the order cannot be carried out now',
+    PlacementCode.IN_PROGRESS: 'the order is being carried out',
+}
+"""The usual sentence of each code."""
+
+
 @dataclass(frozen=True)
 class PlacementOutcome:
     """The result of a :class:`PlaceBlock`.
@@ -168,6 +181,60 @@ class PlacementOutcome:
     def failed(self) -> bool:
         """Whether the world cannot place any further block."""
         return self.code is PlacementCode.FAILED
+
+    @property
+    def sentence(self) -> str:
+        """Why, in words."""
+        return self.reason or PLACEMENT_REASONS[self.code]
+
+
+@dataclass(frozen=True)
+class Held:
+    """Orders may be given in states before the one with number ``until``; None: in all."""
+
+    trial_id: str
+    until: int | None = None
+
+
+@dataclass(frozen=True)
+class ArmOrder:
+    """An arm has to carry out an order; its :class:`ArmReport` comes back to the world.
+
+    ``placed`` is where the block comes to rest if all goes well.
+    """
+
+    trial_id: str
+    sequence: int
+    placed: Placed
+
+    def report(self, code: PlacementCode, **fields: Any) -> ArmReport:
+        """What became of it."""
+        return ArmReport(self.trial_id, self.sequence, self.placed.placement, code, **fields)
+
+
+@dataclass(frozen=True)
+class ArmReport:
+    """What an arm did.
+
+    Attributes:
+        trial_id: of the trial.
+        sequence: of the state that the order referred to.
+        ordered: what it was to place.
+        code: what became of the order.
+        landed: blocks that stand now and did not before.
+        gone: blocks that stood before and do not now.
+        reason: a sentence that says why, '' for the usual one.
+        progress: of an order that is being carried out, from 0 to 1.
+    """
+
+    trial_id: str
+    sequence: int
+    ordered: Placement
+    code: PlacementCode
+    landed: Blocks = ()
+    gone: Blocks = ()
+    reason: str = ''
+    progress: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -203,5 +270,6 @@ class Remind:
 
 Message: TypeAlias = (
     'TrialStarted | WorldState | SearchRequest | SearchAnswer | SubgoalChosen | Solve | '
-    'ProposalMade | PlanMade | PlaceBlock | PlacementOutcome | CancelTrial | TrialEnded | Remind'
+    'ProposalMade | PlanMade | PlaceBlock | PlacementOutcome | ArmOrder | ArmReport | '
+    'Held | CancelTrial | TrialEnded | Remind'
 )

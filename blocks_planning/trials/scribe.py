@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from blocks_planning.trials.cutting import begun
 from blocks_planning.trials.execution import SubgoalChosen, history
 from blocks_planning.trials.messages import (
     CancelTrial,
@@ -34,7 +35,7 @@ class Memory:
         """The record of the trial; it must have begun."""
         if self.trial is None:
             raise ValueError('there is no record before a trial begins')
-        return TrialRecord(
+        record = TrialRecord(
             spec=self.trial.spec,
             status=self.status,
             observations=() if self.state is None else self.state.observations,
@@ -42,6 +43,8 @@ class Memory:
             proposals=() if self.chosen is None else self.chosen.proposals,
             reason=self.reason,
         )
+        # A state or a decision may have been on its way when the trial was cancelled.
+        return begun(record) if self.status is TrialStatus.CANCELLED else record
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
@@ -60,8 +63,8 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             memory = replace(memory, chosen=message)
         case CancelTrial(_, reason):
             return _cancelled(memory, trial.trial_id, reason)
-        case PlacementOutcome(_, at, _, reason, failed=True) if state and at == state.sequence:
-            return _cancelled(memory, trial.trial_id, reason)
+        case PlacementOutcome(sequence=at, failed=True) if state and at == state.sequence:
+            return _cancelled(memory, trial.trial_id, message.sentence)
         case _:
             return memory, ()
     memory = replace(memory, status=_status(memory))

@@ -9,6 +9,7 @@ from blocks_planning.subgoals.decision import Query
 from blocks_planning.trials.answers import Answers
 from blocks_planning.trials.execution import SubgoalChosen, history
 from blocks_planning.trials.messages import (
+    Held,
     Message,
     PlaceBlock,
     PlanMade,
@@ -38,6 +39,7 @@ class Memory:
         solving: queries that are being solved.
         chosen: the subgoal to execute.
         planned: the subgoal whose plan was announced.
+        until: number of the first state in which no order may be given; None: there is none.
     """
 
     trial: TrialStarted | None = None
@@ -46,6 +48,7 @@ class Memory:
     solving: frozenset[Query] = frozenset()
     chosen: SubgoalChosen | None = None
     planned: SubgoalChosen | None = None
+    until: int | None = None
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
@@ -69,6 +72,8 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             return _act(replace(memory, state=message))
         case SubgoalChosen() if chosen is None or message.sequence > chosen.sequence:
             return _act(replace(memory, chosen=message))
+        case Held(_, until) if until != memory.until:
+            return _act(replace(memory, until=until))
         case Remind():
             return _act(memory)
     return memory, ()
@@ -105,7 +110,8 @@ def _act(memory: Memory, only_for: Query | None = None) -> tuple[Memory, tuple[M
         execute = chosen.subgoal.execute
         said = (PlanMade(trial.trial_id, chosen.sequence, query.target, execute, plan),)
     done = _next_placement(trial, state, chosen)
-    if done is not None and done < len(plan):
+    may_order = memory.until is None or state.sequence < memory.until
+    if done is not None and done < len(plan) and may_order:
         said += (PlaceBlock(trial.trial_id, state.sequence, plan[done].placement),)
     return replace(memory, planned=chosen), said
 

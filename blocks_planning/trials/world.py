@@ -9,6 +9,8 @@ from blocks_planning.board import rules
 from blocks_planning.board.geometry import Mask
 from blocks_planning.board.task import Task
 from blocks_planning.trials.messages import (
+    ArmOrder,
+    ArmReport,
     Message,
     PlaceBlock,
     PlacementCode,
@@ -21,7 +23,7 @@ from blocks_planning.trials.messages import (
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.worlds.observation import MAX_OBSERVATIONS, Blocks, Observation, Observations
-from blocks_planning.worlds.world import ImpossibleOrder
+from blocks_planning.worlds.world import ImpossibleOrder, drop_ordered
 
 TOO_MANY = f'the trial would need more than {MAX_OBSERVATIONS} observations'
 
@@ -63,7 +65,10 @@ def state_after(trial_id: str, spec: TrialSpec, observations: Observations) -> W
 
 
 def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]:
-    """Set up the board for a new trial; carry out an order that refers to the current state."""
+    """Set up the board for a new trial; carry out an order that refers to the current state.
+
+    In an observed world an arm carries it out, and reports the state of the board afterwards.
+    """
     spec, state = memory.spec, memory.state
     if isinstance(message, TrialStarted):
         if state is not None and state.trial_id == message.trial_id:
@@ -78,6 +83,8 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             return Memory(), ()
         case PlaceBlock() if message.sequence == state.sequence:
             return _carry_out(memory, spec, state, message)
+        case ArmReport() if message.sequence == state.sequence:
+            return _note_report(memory, spec, state, message)
     return memory, ()
 
 
@@ -110,6 +117,9 @@ def _carry_out(
         )
         return memory, (failed,)
     try:
+        if not spec.world.simulates:
+            placed = drop_ordered(spec.task, state.built, action.placement)
+            return memory, (ArmOrder(state.trial_id, state.sequence, placed),)
         seen = spec.world.carry_out(spec.task, state.built, action.placement, spec.seed, sequence)
     except ImpossibleOrder as error:
         refused = PlacementCode.IMPOSSIBLE
@@ -117,10 +127,45 @@ def _carry_out(
             PlacementOutcome(state.trial_id, state.sequence, None, str(error), refused),
         )
     after = state_after(state.trial_id, spec, (*state.observations, seen))
-    landed = seen.landed[0] if seen.landed else None
+    return _observed(memory, seen, after)
+
+
+_OBSERVED = (
+    *(PlacementCode.PLACED, PlacementCode.SLIPPED),
+    *(PlacementCode.LOST, PlacementCode.COLLAPSED),
+)
+"""Codes after which there is another board to look at."""
+
+
+def _note_report(
+    memory: Memory, spec: TrialSpec, state: WorldState, report: ArmReport
+) -> tuple[Memory, tuple[Message, ...]]:
+    """Observe what an arm says that it has done, or pass on why it has done nothing."""
     outcome = PlacementOutcome(
-        state.trial_id, state.sequence, landed, code=_code_of(seen, after.status)
+        state.trial_id, state.sequence, None, report.reason, report.code, report.progress
     )
+    if report.code not in _OBSERVED:
+        return memory, (outcome,)
+    seen = Observation(report.ordered, report.landed, report.gone)
+    wrong = spec.world.complaint(
+        spec.task, state.placements, state.built, seen, spec.seed, state.sequence + 1
+    )
+    if wrong:
+        reason = f'the arm reports what cannot be: {wrong}'
+        return memory, (replace(outcome, reason=reason, code=PlacementCode.FAILED),)
+    after = state_after(state.trial_id, spec, (*state.observations, seen))
+    if report.code is PlacementCode.COLLAPSED:
+        after = replace(after, status=TrialStatus.COLLAPSED)
+    return _observed(memory, seen, after, report.reason)
+
+
+def _observed(
+    memory: Memory, seen: Observation, after: WorldState, reason: str = ''
+) -> tuple[Memory, tuple[Message, ...]]:
+    """Go on with another state."""
+    landed = seen.landed[0] if seen.landed else None
+    code = _code_of(seen, after.status)
+    outcome = PlacementOutcome(after.trial_id, after.sequence - 1, landed, reason, code)
     return replace(memory, state=after), (outcome, after)
 
 

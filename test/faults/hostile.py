@@ -15,6 +15,7 @@ from blocks_planning.errors import InvalidInput
 from blocks_planning.ros.runtime.guarded import read_message
 from blocks_planning.ros.wire.topics import (
     ACTION,
+    HOLD,
     OUTCOME,
     PROPOSAL,
     SEARCH_RESULT,
@@ -134,7 +135,14 @@ class Hostile:
                 topic.from_ros(None, message)
                 return message.trial_id in self._specs
             spec = self._specs.get(message.trial_id)
-            if spec is None or topic not in (ACTION, PROPOSAL, SEARCH_RESULT, STATE, SUBGOAL):
+            if spec is None or topic not in (
+                ACTION,
+                HOLD,
+                PROPOSAL,
+                SEARCH_RESULT,
+                STATE,
+                SUBGOAL,
+            ):
                 return False
             Consistency(spec).check(topic.from_ros(spec.task.board, message))
         except InvalidInput:

@@ -27,6 +27,7 @@ from blocks_planning.subgoals.none import NoSubgoals
 from blocks_planning.subgoals.registry import STRATEGIES, planner_names
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
+    Held,
     Message,
     PlacementCode,
     PlacementOutcome,
@@ -163,7 +164,9 @@ def test_every_strategy_there_and_back(name: str) -> None:
 
 
 def test_every_topic_carries_something_in_a_trial() -> None:
-    assert check_there_and_back(*said_in(HUMAN)) == set(TOPIC_OF)
+    messages, record = said_in(HUMAN)
+    pauses = [Held(HUMAN.trial_id, until) for until in (0, 3, None)]
+    assert check_there_and_back([*messages, *pauses], record) == set(TOPIC_OF)
 
 
 @pytest.mark.parametrize('seed', range(5))

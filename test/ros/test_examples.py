@@ -79,7 +79,7 @@ def test_example_takes_the_place_of_a_node(examples: list[str], tmp_path: Path) 
         assert list(contradictions(record)) == []
 
 
-@pytest.mark.parametrize('example', EXAMPLES)
+@pytest.mark.parametrize('example', [*EXAMPLES, 'clumsy_arm'])
 def test_example_is_short_and_printed_in_the_documentation(example: str) -> None:
     path = ROOT / 'docs' / 'examples' / f'{example}.py'
     code = [line for line in path.read_text(encoding='utf-8').splitlines() if line.strip()]

@@ -17,6 +17,7 @@ import pytest
 import yaml
 from blocks_planning_msgs.action import RunTrial
 from builders import CHAIR, EMPTY, NEVER_SOLVED, ended, spec
+from carried import sent
 from graphs import NODES
 from peers import Bench, Graph, Peer
 from rclpy.action.client import ActionClient, GoalStatus
@@ -400,7 +401,7 @@ def test_goal_that_cannot_be_run_is_aborted_with_the_reason(graph: Graph, tmp_pa
         (lambda trial: setattr(trial, 'library', []), 'library: '),
     ]
     for count, (change, reason) in enumerate(changes, start=1):
-        trial = spec_to_ros('', TRIAL_SPEC)
+        trial = sent(spec_to_ros('', TRIAL_SPEC))
         change(trial)
         ended = end_of(graph, client, trial)
         assert ended.status == GoalStatus.STATUS_ABORTED
@@ -685,7 +686,8 @@ def test_docstring_names_topics_and_parameters(name: str, make: Callable[..., An
     }
     parameters = re.findall(r'(?:^|; )`(\w+)`', rows['parameters'])
     assert parameters == list(own_parameters(make(name)))
-    assert ('action' in rows) == (name == 'trial_orchestrator')
+    assert ('action' in rows) == (name in ('trial_orchestrator', 'action_searcher'))
+    assert ('services' in rows) == (name == 'trial_orchestrator')
 
 
 def named(row: str) -> dict[str, bool]:

@@ -474,7 +474,7 @@ def test_scribe_has_no_record_before_a_trial() -> None:
 
 def test_scribe_ends_a_trial_that_the_world_can_not_go_on_with() -> None:
     """With what the world says, and only on the state that it says it of."""
-    memory, _ = tell(scribe, [HEARD[0], STATES[0], STATES[1]])
+    memory, _ = tell(scribe, [HEARD[0], STATES[0], CHOSEN[0], STATES[1]])
     failed = PlacementOutcome(TRIAL.trial_id, 1, None, 'the arm is broken', PlacementCode.FAILED)
     for stale in (replace(failed, sequence=0), replace(failed, sequence=2)):
         assert scribe.step(memory, stale) == (memory, ())
@@ -484,6 +484,21 @@ def test_scribe_ends_a_trial_that_the_world_can_not_go_on_with() -> None:
     assert (record.status, record.reason) == (TrialStatus.CANCELLED, 'the arm is broken')
     assert said == (TrialEnded(TRIAL.trial_id, record.status, record.reason, record),)
     assert memory.record().placements == STATES[1].placements
+
+
+def test_record_of_a_cancelled_trial_is_cut_where_something_was_on_its_way() -> None:
+    for state in STATES:
+        for count in range(len(CHOSEN) + 1):
+            memory, _ = tell(scribe, [HEARD[0], state, *CHOSEN[:count]])
+            memory, _ = scribe.step(memory, CancelTrial(TRIAL.trial_id, 'why'))
+            assert list(contradictions(memory.record())) == []
+
+
+def test_scribe_says_the_usual_sentence_of_a_failure_without_one() -> None:
+    memory, _ = tell(scribe, [HEARD[0], STATES[0]])
+    failed = PlacementOutcome(TRIAL.trial_id, 0, None, '', PlacementCode.FAILED)
+    memory, _ = scribe.step(memory, failed)
+    assert memory.record().reason == 'no block can be placed any more'
 
 
 def test_world_is_restored_by_placements_that_can_be_only() -> None:

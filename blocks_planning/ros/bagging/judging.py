@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from blocks_planning.trials import scribe, verify
-from blocks_planning.trials.execution import spans_of
+from blocks_planning.trials.cutting import begun, cut
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.worlds.observation import Blocks
@@ -105,18 +105,6 @@ def _show(value: object) -> str:
     return repr(value) if isinstance(value, str) else str(value)
 
 
-def begun(record: TrialRecord) -> TrialRecord:
-    """The part of a record that has both observations and decisions, as if cancelled after it."""
-    executed: dict[int, int] = {}
-    last = 0
-    for span in spans_of(record):
-        executed[span.decision] = span.subgoal + 1
-        last = span.progress.sequence
-        if span.progress.is_open:  # later subgoals are not observed yet
-            break
-    return _cut(record, executed, last, '')
-
-
 def cancelled(memory: scribe.Memory, outcome: Outcome) -> TrialRecord:
     """The record at the time of cancelling: other nodes may have continued for a moment."""
     record = memory.record()
@@ -127,27 +115,4 @@ def cancelled(memory: scribe.Memory, outcome: Outcome) -> TrialRecord:
         left -= count
         if count or not entry.decision.subgoals:
             executed[index] = count
-    return _cut(record, executed, outcome.sequence, outcome.reason)
-
-
-def _cut(record: TrialRecord, executed: Mapping[int, int], last: int, reason: str) -> TrialRecord:
-    """A record that was cancelled after an observation.
-
-    Args:
-        record: the whole record.
-        executed: number of subgoals that were begun, by the index of the decisions that are kept.
-        last: number of the last observation that is kept.
-        reason: why it was cancelled.
-    """
-    decisions = tuple(
-        replace(record.decisions[index], executed=count) for index, count in executed.items()
-    )
-    places = {entry.sequence for entry in decisions}
-    return replace(
-        record,
-        status=TrialStatus.CANCELLED,
-        observations=record.observations[: last + 1],
-        decisions=decisions,
-        proposals=tuple(p for p in record.proposals if p.sequence in places),
-        reason=reason,
-    )
+    return cut(record, executed, outcome.sequence, outcome.reason)

@@ -6,8 +6,9 @@ the default search when the node starts.
 
 | | |
 |---|---|
-| subscribes | `trial`, `state`, `subgoal`, `outcome` (latched), `search/request` (stream) |
+| subscribes | `trial`, `state`, `subgoal`, `hold`, `outcome` (latched), `search/request` (stream) |
 | publishes | `search/result`, `action` (stream), `plan` (latched) |
+| action | `plan_tower`: plans a tower without building it |
 | parameters | `remind_period_s`; `frame_id`; `workers`: number of searches that run at once |
 """
 
@@ -23,6 +24,7 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.ros.runtime.diagnostics import Health
 from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import PartNode
+from blocks_planning.ros.runtime.planning import PlanServer
 from blocks_planning.ros.runtime.process import run
 from blocks_planning.ros.wire.graph import ACTION_SEARCHER
 from blocks_planning.search.many import solve_many
@@ -55,6 +57,7 @@ class ActionSearcher(PartNode):
         self._cancel = CancelToken()
         self._threads = ThreadPoolExecutor(self.values['workers'], 'search')
         self._kernels = Kernels(self.get_logger().info)
+        self._plans = PlanServer(self, self._kernels)
         self._waiting: deque[_Question] = deque()
         self._answers: deque[SearchAnswer | BaseException] = deque()
         self._counting = threading.Lock()

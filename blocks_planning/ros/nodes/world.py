@@ -3,13 +3,17 @@
 The driver of real hardware can replace this node without other changes. With a ``journal_dir`` a
 world that was killed and restarted continues with the board of the running trial. If an observation
 cannot be written to disk, the order is not executed; the trial ends, and its outcome has the
-reason.
+reason. While an order takes longer than a second, the world reports that every second.
+
+In a trial of world `observed` it asks an arm, by the action `place`, to carry out each order. What
+the arm reports is the state of the board.
 
 | | |
 |---|---|
 | subscribes | `trial`, `outcome` (latched), `action` (stream) |
 | publishes | `state` (latched), `action/outcome` (stream) |
-| parameters | `remind_period_s`; `frame_id`; `journal_dir`: folder of the journal; `placing_s`: duration of a placement |
+| asks | action `place`, in trials of world `observed` |
+| parameters | `remind_period_s`; `frame_id`; `journal_dir`: folder of the journal; `placing_s`: duration of a placement; `cell_size`: side of a cell, for an arm |
 """
 
 from __future__ import annotations
@@ -18,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from blocks_planning.errors import RecordError
+from blocks_planning.ros.runtime.arm import Arm
 from blocks_planning.ros.runtime.guarded import WARN_PERIOD_S
 from blocks_planning.ros.runtime.journal import Journal
 from blocks_planning.ros.runtime.parameters import Parameter
@@ -26,6 +31,8 @@ from blocks_planning.ros.runtime.process import run
 from blocks_planning.ros.wire.graph import WORLD
 from blocks_planning.trials import world
 from blocks_planning.trials.messages import (
+    ArmOrder,
+    ArmReport,
     Message,
     PlaceBlock,
     PlacementCode,
@@ -37,6 +44,8 @@ from blocks_planning.trials.messages import (
 
 JOURNAL_DIR = Parameter('journal_dir', '', 'Folder of the journal; none: no journal.')
 PLACING = Parameter('placing_s', 0.0, 'Duration of a placement [s].', (0.0, 3600.0))
+CELL_SIZE = Parameter('cell_size', 0.05, 'Side of a cell, for an arm [m].', (1e-6, 1e3))
+NEWS_PERIOD_S = 1.0
 
 
 class World(PartNode):
@@ -48,15 +57,19 @@ class World(PartNode):
         Raises:
             RecordError: if the journal cannot be written in its folder.
         """
-        super().__init__(WORLD, world, (JOURNAL_DIR, PLACING), **options)
+        super().__init__(WORLD, world, (JOURNAL_DIR, PLACING, CELL_SIZE), **options)
         folder = self.values['journal_dir']
         self._journal = Journal(Path(folder)) if folder else None
         self._lost = ''
         self._placing: PlaceBlock | None = None
-        self._arm = self.create_timer(
+        self._placed = self.create_timer(
             max(self.values['placing_s'], 1e-3), self._place, clock=self.steady
         )
-        self._arm.cancel()
+        self._placed.cancel()
+        self._began_s = 0.0
+        self._news = self.create_timer(NEWS_PERIOD_S, self._tell_progress, clock=self.steady)
+        self._news.cancel()
+        self._arm: Arm | None = None
 
     def advance(self, message: Message) -> tuple[Message, ...]:
         """See :class:`PartNode`; an observation is in the journal before it is published."""
@@ -67,7 +80,7 @@ class World(PartNode):
         match message:
             case TrialStarted() if said:
                 return self._resume(self._journal, message.trial_id)
-            case PlaceBlock() if said:
+            case PlaceBlock() | ArmReport() if said:
                 try:
                     for state in (answer for answer in said if isinstance(answer, WorldState)):
                         self._journal.append(state.observations[-1])
@@ -98,7 +111,7 @@ class World(PartNode):
             self.get_logger().warning(self._lost)
         return (self.memory.state,)
 
-    def _failure(self, action: PlaceBlock, reason: str) -> tuple[Message, ...]:
+    def _failure(self, action: PlaceBlock | ArmReport, reason: str) -> tuple[Message, ...]:
         """No block can be placed any more."""
         self.get_logger().error(
             reason,
@@ -107,6 +120,22 @@ class World(PartNode):
         )
         code = PlacementCode.FAILED
         return (PlacementOutcome(action.trial_id, action.sequence, None, reason, code),)
+
+    def take(self, message: Message) -> None:
+        """See :class:`PartNode`; the arm works for the trial that runs only."""
+        before = self.memory.state
+        super().take(message)
+        after = self.memory.state
+        is_left = before is not None and (after is None or after.trial_id != before.trial_id)
+        if is_left and self._arm is not None:
+            self._arm.stop()
+
+    def perform(self, message: Message) -> None:
+        """Have an order carried out by the arm."""
+        assert isinstance(message, ArmOrder)
+        if self._arm is None:
+            self._arm = Arm(self, self.stamped, self.take, self.values['cell_size'])
+        self._arm.carry_out(message, self.board)
 
     @property
     def is_busy(self) -> bool:
@@ -128,11 +157,23 @@ class World(PartNode):
         if not isinstance(message, PlaceBlock) or self.values['placing_s'] == 0:
             super().receive(message)
         elif self._placing is None or self._placing.trial_id != message.trial_id:
-            self._placing = message
-            self._arm.reset()
+            self._placing, self._began_s = message, self.now_s
+            self._placed.reset()
+            self._news.reset()
+
+    def _tell_progress(self) -> None:
+        action = self._placing
+        if action is None or self.trial is None or action.trial_id != self.trial.trial_id:
+            return
+        progress = min(1.0, (self.now_s - self._began_s) / self.values['placing_s'])
+        code = PlacementCode.IN_PROGRESS
+        self.say(
+            PlacementOutcome(action.trial_id, action.sequence, None, code=code, progress=progress)
+        )
 
     def _place(self) -> None:
-        self._arm.cancel()
+        self._placed.cancel()
+        self._news.cancel()
         action, self._placing = self._placing, None
         if action is not None:
             super().receive(action)

@@ -51,6 +51,11 @@ class GuardedNode(Node):
         self.steady = Clock(clock_type=ClockType.STEADY_TIME)
         super().__init__(name, **options)
 
+    @property
+    def now_s(self) -> float:
+        """What the steady clock says [s]."""
+        return float(self.steady.now().nanoseconds / 1e9)
+
     def refuse(self, what: str, reason: object) -> None:
         """Count an invalid message, request or goal, and warn about it at a limited rate."""
         self.refused += 1

@@ -232,9 +232,13 @@ class PartNode(GuardedNode):
                 converted = topic.from_ros(known.spec.task.board, message)
                 known.check(converted)
         except InvalidInput as error:
-            self.refuse(f'a message on {topic.name}', error)
+            self.refuse_message(topic, error)
         else:
             self.receive(converted)
+
+    def refuse_message(self, topic: Topic, error: InvalidInput) -> None:
+        """Refuse a message from the graph."""
+        self.refuse(f'a message on {topic.name}', error)
 
     def _hold(self, topic: Topic, message: Any, data: bytes) -> None:
         """Keep a message until its trial is announced.
@@ -253,14 +257,14 @@ class PartNode(GuardedNode):
     def _remind(self) -> None:
         if self.trial is not None and not self._has_news:
             if self._older_states >= _OLDER_STATES:
-                self._start_over(self.trial)
+                self.start_over(self.trial)
             self.take(Remind(self.trial.trial_id))
             for topic, message in list(self._latched.items()):
                 if message.trial_id == self.trial.trial_id:
                     self._outlets[topic.kind].publish(message)
         self._has_news = False
 
-    def _start_over(self, trial: TrialStarted) -> None:
+    def start_over(self, trial: TrialStarted) -> None:
         """Forget the state of the trial, as if this node had just been started.
 
         The world publishes an older board than this node knows: the board was reset, or this node

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from blocks_planning.ros.wire.topics import (
     ACTION,
     ACTION_OUTCOME,
+    HOLD,
     MARKERS,
     OUTCOME,
     PLAN,
@@ -39,11 +40,11 @@ SUBGOAL_SELECTOR = NodeTopics(
 )
 ACTION_SEARCHER = NodeTopics(
     'action_searcher',
-    (TRIAL, STATE, SEARCH_REQUEST, SUBGOAL, OUTCOME),
+    (TRIAL, STATE, SEARCH_REQUEST, SUBGOAL, HOLD, OUTCOME),
     (SEARCH_RESULT, PLAN, ACTION),
 )
 TRIAL_ORCHESTRATOR = NodeTopics(
-    'trial_orchestrator', (STATE, SUBGOAL, ACTION_OUTCOME), (TRIAL, OUTCOME)
+    'trial_orchestrator', (STATE, SUBGOAL, ACTION, ACTION_OUTCOME), (TRIAL, HOLD, OUTCOME)
 )
 BAG_RECORDER = NodeTopics('bag_recorder', TOPICS, ())
 MARKER_PUBLISHER = NodeTopics('marker_publisher', (TRIAL, STATE, SUBGOAL, OUTCOME), (), (MARKERS,))

@@ -9,6 +9,7 @@
 | `subgoal` | the next subgoal, and all decisions so far | latched |
 | `plan` | the placements that will be carried out | latched |
 | `action`, `action/outcome` | an order, and its outcome | stream |
+| `hold` | the state up to which orders may be given | latched |
 | `outcome` | the end of the trial; every node stops working on it | latched |
 | `markers` | the tower in three dimensions, for viewers only | latched |
 
@@ -25,7 +26,7 @@ from rclpy.qos import QoSProfile
 from visualization_msgs.msg import MarkerArray
 
 from blocks_planning.ros.wire import qos
-from blocks_planning.ros.wire.conversions import board, decisions, proposals, search, trial
+from blocks_planning.ros.wire.conversions import board, decisions, hold, proposals, search, trial
 from blocks_planning.trials import messages as core
 from blocks_planning.trials.execution import SubgoalChosen
 
@@ -124,6 +125,7 @@ ACTION_OUTCOME = Topic(
     board.placement_outcome_to_ros,
     board.placement_outcome_from_ros,
 )
+HOLD = Topic('hold', ros.Hold, core.Held, hold.held_to_ros, hold.held_from_ros, latched=True)
 OUTCOME = Topic(
     'outcome',
     ros.TrialOutcome,
@@ -143,6 +145,7 @@ TOPICS = (
     PLAN,
     ACTION,
     ACTION_OUTCOME,
+    HOLD,
     OUTCOME,
 )
 

@@ -27,6 +27,7 @@ from blocks_planning.ros.wire.conversions.fields import (
     word,
 )
 from blocks_planning.trials.messages import (
+    PLACEMENT_REASONS,
     PlaceBlock,
     PlacementCode,
     PlacementOutcome,
@@ -49,16 +50,6 @@ STATE_REASONS = {
     'success': 'the filled cells are the silhouette',
     'stuck': 'no legal placement is left',
     'collapsed': 'the tower fell',
-}
-_PLACEMENT_REASONS = {
-    PlacementCode.PLACED: 'the block rests where it was ordered',
-    PlacementCode.SLIPPED: 'the block landed elsewhere',
-    PlacementCode.LOST: 'no block landed',
-    PlacementCode.COLLAPSED: 'the tower fell',
-    PlacementCode.IMPOSSIBLE: 'the block would not come to rest inside the board',
-    PlacementCode.FAILED: 'no block can be placed any more',
-    PlacementCode.TRY_AGAIN: 'the order cannot be carried out now',
-    PlacementCode.IN_PROGRESS: 'the order is being carried out',
 }
 _LANDS = (PlacementCode.PLACED, PlacementCode.SLIPPED)
 _MAY_LAND = (*_LANDS, PlacementCode.COLLAPSED)
@@ -160,7 +151,7 @@ def placement_outcome_to_ros(board: Board, message: PlacementOutcome) -> ros.Pla
         trial_id=message.trial_id,
         sequence=message.sequence,
         code=message.code.value,
-        reason=message.reason or _PLACEMENT_REASONS[message.code],
+        reason=message.sentence,
         progress=message.progress,
         placed=ros.Placement() if placed is None else placed_to_ros(placed),
     )
@@ -175,7 +166,7 @@ def placement_outcome_from_ros(board: Board, message: ros.PlacementOutcome) -> P
     if not 0 <= message.progress <= 1:
         raise refuse('progress', message.progress, 'a number from 0 to 1')
     has_landed = code in _LANDS or (code in _MAY_LAND and message.placed != ros.Placement())
-    usual = message.reason == _PLACEMENT_REASONS[code]
+    usual = message.reason == PLACEMENT_REASONS[code]
     return PlacementOutcome(
         message.trial_id,
         message.sequence,

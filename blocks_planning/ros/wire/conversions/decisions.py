@@ -49,7 +49,7 @@ def subgoal_to_ros(board: Board, message: SubgoalChosen) -> ros.Subgoal:
         sequence=message.sequence,
         status=status,
         reason=reason,
-        decisions=[_decision_to_ros(board, entry) for entry in message.decisions],
+        decisions=[decision_to_ros(board, entry) for entry in message.decisions],
         proposals=[
             proposal_to_ros(board, ProposalMade(message.trial_id, proposal))
             for proposal in message.proposals
@@ -79,7 +79,8 @@ def subgoal_from_ros(board: Board, message: ros.Subgoal) -> SubgoalChosen:
     return chosen
 
 
-def _decision_to_ros(board: Board, entry: DecisionRecord) -> ros.Decision:
+def decision_to_ros(board: Board, entry: DecisionRecord) -> ros.Decision:
+    """See :class:`DecisionRecord`."""
     decision = entry.decision
     regions = {region: number for number, region in enumerate(regions_of(decision))}
     return ros.Decision(

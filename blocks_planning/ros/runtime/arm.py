@@ -1,0 +1,111 @@
+"""An arm that carries out orders: the client of the action ``place``, one order at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from blocks_planning_msgs.action import Place
+from rclpy.action.client import ActionClient, ClientGoalHandle
+from rclpy.task import Future
+
+from blocks_planning.board.geometry import Board
+from blocks_planning.errors import InvalidInput
+from blocks_planning.ros.runtime.guarded import GuardedNode
+from blocks_planning.ros.wire.conversions.place import order_to_ros, report_from_ros
+from blocks_planning.trials.messages import ArmOrder, ArmReport, PlacementCode
+
+ACTION = 'place'
+NEWS_PERIOD_S = 0.5
+"""Least time between two reports of progress in the same phase [s]."""
+
+
+class Arm:
+    """Asks whoever serves ``place``; reports what becomes of each order, once.
+
+    An order that is given again while it is being carried out changes nothing.
+    """
+
+    def __init__(
+        self,
+        node: GuardedNode,
+        stamp: Callable[[Any], Any],
+        report: Callable[[ArmReport], None],
+        cell_m: float,
+    ) -> None:
+        """Look for the server.
+
+        Args:
+            node: whose client this is.
+            stamp: fills in the header of a goal.
+            report: is given the reports, in the thread that spins the node.
+            cell_m: the side of a cell [m].
+        """
+        self._node = node
+        self._stamp = stamp
+        self._report = report
+        self._cell_m = cell_m
+        self._client = ActionClient(node, Place, ACTION)
+        self._order: ArmOrder | None = None
+        self._goal: ClientGoalHandle | None = None
+        self._phase = ''
+        self._told_s = 0.0
+
+    def carry_out(self, order: ArmOrder, board: Board) -> None:
+        """Begin an order on a board; an order of before that still lasts is stopped."""
+        if not self._client.server_is_ready():
+            self.stop()
+            self._report(_again(order, f'no node serves the action {ACTION}'))
+            return
+        if order == self._order:
+            return
+        self.stop()
+        self._order, self._phase, self._told_s = order, '', 0.0
+        goal = self._stamp(order_to_ros(order, self._cell_m))
+        sending = self._client.send_goal_async(goal, partial(self._on_feedback, order))
+        sending.add_done_callback(partial(self._on_answer, order, board))
+
+    def stop(self) -> None:
+        """Stop the arm; nothing more is reported of its order."""
+        self._order = None
+        if self._goal is not None:
+            self._goal.cancel_goal_async()
+            self._goal = None
+
+    def _on_feedback(self, order: ArmOrder, message: Any) -> None:
+        phase, progress = message.feedback.phase, message.feedback.progress
+        is_news = phase != self._phase or self._node.now_s - self._told_s >= NEWS_PERIOD_S
+        if order == self._order and is_news and 0 <= progress <= 1:
+            self._phase, self._told_s = phase, self._node.now_s
+            code = PlacementCode.IN_PROGRESS
+            self._report(order.report(code, reason=phase, progress=progress))
+
+    def _on_answer(self, order: ArmOrder, board: Board, sent: Future) -> None:
+        goal: ClientGoalHandle = sent.result()
+        if order != self._order:  # it was stopped meanwhile
+            if goal.accepted:
+                goal.cancel_goal_async()
+        elif goal.accepted:
+            self._goal = goal
+            goal.get_result_async().add_done_callback(partial(self._on_result, order, board))
+        else:
+            self._end(_again(order, 'the arm did not accept the order'))
+
+    def _on_result(self, order: ArmOrder, board: Board, got: Future) -> None:
+        if order != self._order:
+            return
+        try:
+            report = report_from_ros(board, order, got.result().result)
+        except InvalidInput as error:
+            self._node.refuse(f'a result of {ACTION}', error)
+            report = order.report(PlacementCode.FAILED, reason=f'result of the arm: {error}')
+        self._end(report)
+
+    def _end(self, report: ArmReport) -> None:
+        self._order = self._goal = None
+        self._report(report)
+
+
+def _again(order: ArmOrder, reason: str) -> ArmReport:
+    return order.report(PlacementCode.TRY_AGAIN, reason=reason)
