@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 from oracles.board import EMPTY, Block, Cells, legal_placements, place
-from oracles.search import Task
+from oracles.tree import Task
 
 PAPER_LIBRARY = ((1, 2), (2, 1), (2, 2), (2, 4), (4, 2))
 LYING = ((2, 1),)

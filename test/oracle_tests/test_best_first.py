@@ -5,10 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from oracles.board import EMPTY
-from oracles.randomness import Generator
-from oracles.search import (
-    Node,
+from oracles.best_first import (
     Queue,
     astar_choice,
     best_first_choice,
@@ -17,6 +14,9 @@ from oracles.search import (
     f_mean,
     f_smallest,
 )
+from oracles.board import EMPTY
+from oracles.randomness import Generator
+from oracles.tree import Node
 from small_boards import LYING, PAPER_LIBRARY, STANDING, full_task
 
 

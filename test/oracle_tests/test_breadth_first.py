@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 from oracles.board import EMPTY, Block, read_picture
+from oracles.breadth_first import bfs_choice, count_tree
 from oracles.randomness import Generator
-from oracles.search import Task, bfs_choice, count_tree
+from oracles.tree import Task
 from small_boards import DOMINOES, LYING, PAPER_LIBRARY, STANDING, TOWER_1, TOWER_6, full_task
 
 # Trees.

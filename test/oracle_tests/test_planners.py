@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from oracles import planners
+from oracles import decisions, planners
 from oracles.board import EMPTY, legal_placements, place, read_picture
 from oracles.randomness import attempt_generator, subgoal_generator
 from small_boards import DOMINOES, LYING, STANDING, STEP, full_board, random_board
@@ -24,7 +24,7 @@ def test_none_plans_the_whole() -> None:
     assert trial.action_planning_cost == trial.solution_cost == 2
     assert trial.subgoal_planning_cost == 0
     assert trial.decisions == (
-        planners.Decision(EMPTY, (planners.Candidate(2, 4, 2, None, 'solved'),), 2),
+        decisions.Decision(EMPTY, (decisions.Candidate(2, 4, 2, None, 'solved'),), 2),
     )
 
 
@@ -35,18 +35,18 @@ def test_none_carries_out_its_last_attempt() -> None:
     assert trial.status == 'stuck'
     assert (trial.blocks, trial.subgoals, trial.action_planning_cost) == (1, 1, 4)
     (decision,) = trial.decisions
-    assert decision.candidates == (planners.Candidate(2, 3, 4, None, 'budget_exhausted'),)
+    assert decision.candidates == (decisions.Candidate(2, 3, 4, None, 'budget_exhausted'),)
     assert decision.chosen == 2
 
 
 @pytest.mark.parametrize('planner', [planners.none, planners.scoping, planners.full])
-def test_trials_that_are_over_before_they_begin(planner: Callable[..., planners.Trial]) -> None:
+def test_trials_that_are_over_before_they_begin(planner: Callable[..., decisions.Trial]) -> None:
     settings = {} if planner is planners.none else {'lam': 1.0}
     trial = planner(2, 2, EMPTY, LYING, search='random', **settings)
-    assert trial == planners.Trial('success', (), 0, 0, 0, 0, 0, ())
+    assert trial == decisions.Trial('success', (), 0, 0, 0, 0, 0, ())
     floating = frozenset({(0, 1), (1, 1)})
     trial = planner(2, 2, floating, LYING, search='random', **settings)
-    assert trial == planners.Trial('stuck', (), 0, 0, 0, 0, 0, ())
+    assert trial == decisions.Trial('stuck', (), 0, 0, 0, 0, 0, ())
 
 
 # Planners: full.
@@ -69,8 +69,8 @@ def test_full_counts_every_subgoal_of_every_sequence() -> None:
         assert trial.subgoal_planning_cost == 2 + 2
         (decision,) = trial.decisions
         assert decision.candidates == (
-            planners.Candidate((1, 2), 4, 2, 2.0, 'solved'),
-            planners.Candidate((2,), 4, 2, 2.0, 'solved'),
+            decisions.Candidate((1, 2), 4, 2, 2.0, 'solved'),
+            decisions.Candidate((2,), 4, 2, 2.0, 'solved'),
         )
         expected = [(1, 2), (2,)][subgoal_generator(seed, EMPTY, 2).below(2)]
         assert decision.chosen == expected
@@ -95,14 +95,14 @@ def test_full_stops_along_a_sequence_at_the_first_unsolved_subgoal() -> None:
         proven, exhausted = 'unsolvable_proven', 'budget_exhausted'
         (decision,) = trial.decisions
         assert decision.candidates == (
-            planners.Candidate((1, 2, 3, 4), 8, 0, None, proven),
-            planners.Candidate((1, 2, 4), 8, 0, None, proven),
-            planners.Candidate((1, 3, 4), 8, 0, None, proven),
-            planners.Candidate((1, 4), 8, 0, None, proven),
-            planners.Candidate((2, 3, 4), 8, 3, None, proven),
-            planners.Candidate((2, 4), 8, 6, 8 - 0.5 * 6, 'solved'),
-            planners.Candidate((3, 4), 8, 3, None, exhausted),
-            planners.Candidate((4,), 8, whole, 8 - 0.5 * whole, 'solved'),
+            decisions.Candidate((1, 2, 3, 4), 8, 0, None, proven),
+            decisions.Candidate((1, 2, 4), 8, 0, None, proven),
+            decisions.Candidate((1, 3, 4), 8, 0, None, proven),
+            decisions.Candidate((1, 4), 8, 0, None, proven),
+            decisions.Candidate((2, 3, 4), 8, 3, None, proven),
+            decisions.Candidate((2, 4), 8, 6, 8 - 0.5 * 6, 'solved'),
+            decisions.Candidate((3, 4), 8, 3, None, exhausted),
+            decisions.Candidate((4,), 8, whole, 8 - 0.5 * whole, 'solved'),
         )
         tie = subgoal_generator(seed, EMPTY, 4).below(2)
         assert decision.chosen == ((2, 4) if whole == 7 else [(2, 4), (4,)][tie])
@@ -121,8 +121,8 @@ def test_full_gives_up() -> None:
     assert (trial.blocks, trial.subgoals, trial.action_planning_cost) == (0, 0, 0)
     assert trial.subgoal_planning_cost == 1 + 4
     assert trial.decisions[0].candidates == (
-        planners.Candidate((1, 2), 3, 1, None, 'unsolvable_proven'),
-        planners.Candidate((2,), 3, 4, None, 'budget_exhausted'),
+        decisions.Candidate((1, 2), 3, 1, None, 'unsolvable_proven'),
+        decisions.Candidate((2,), 3, 4, None, 'budget_exhausted'),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from oracles import planners
+from oracles import decisions, planners
 from oracles.board import EMPTY, read_picture, rows
 from oracles.randomness import subgoal_generator
 from small_boards import DOMINOES, LYING, STANDING, STEP, full_board
@@ -14,16 +14,16 @@ from small_boards import DOMINOES, LYING, STANDING, STEP, full_board
 def test_region_heights_skip_what_adds_nothing() -> None:
     # Ground row empty: rows(1) is what is built. Row 3 empty: rows(4) is rows(3).
     picture = read_picture('# . # # .')[2]
-    assert planners.region_heights(picture, 5, EMPTY) == [2, 3, 5]
-    assert planners.region_heights(picture, 5, rows(picture, 2)) == [3, 5]
+    assert decisions.region_heights(picture, 5, EMPTY) == [2, 3, 5]
+    assert decisions.region_heights(picture, 5, rows(picture, 2)) == [3, 5]
     # Rows 1 and 2 are partly built: rows(1) does not contain that, rows(2) equals it.
     square = full_board(2, 3)
-    assert planners.region_heights(square, 3, frozenset({(0, 0)})) == [1, 2, 3]
-    assert planners.region_heights(square, 3, frozenset({(0, 0), (0, 1)})) == [2, 3]
-    assert planners.region_heights(square, 3, square) == []
+    assert decisions.region_heights(square, 3, frozenset({(0, 0)})) == [1, 2, 3]
+    assert decisions.region_heights(square, 3, frozenset({(0, 0), (0, 1)})) == [2, 3]
+    assert decisions.region_heights(square, 3, square) == []
 
 
-def scope_square(lam: float, seed: int = 0, **settings: Any) -> planners.Trial:
+def scope_square(lam: float, seed: int = 0, **settings: Any) -> decisions.Trial:
     return planners.scoping(
         2, 2, full_board(2, 2), LYING, EMPTY, seed, search='bfs', depth=1, lam=lam, **settings
     )
@@ -38,8 +38,8 @@ def test_scoping_weighs_cells_against_cost() -> None:
     assert trial.subgoal_planning_cost == 1 + 2
     (decision,) = trial.decisions
     assert decision.candidates == (
-        planners.Candidate(1, 2, 1, 1.0, 'solved'),
-        planners.Candidate(2, 4, 2, 2.0, 'solved'),
+        decisions.Candidate(1, 2, 1, 1.0, 'solved'),
+        decisions.Candidate(2, 4, 2, 2.0, 'solved'),
     )
     assert decision.chosen == 2
 
@@ -53,7 +53,7 @@ def test_scoping_takes_small_steps_when_planning_is_dear() -> None:
     assert trial.subgoal_planning_cost == (1 + 2) + 1
     assert [decision.chosen for decision in trial.decisions] == [1, 2]
     assert trial.decisions[1].built == {(0, 0), (1, 0)}
-    assert trial.decisions[1].candidates == (planners.Candidate(2, 2, 1, -1.0, 'solved'),)
+    assert trial.decisions[1].candidates == (decisions.Candidate(2, 2, 1, -1.0, 'solved'),)
 
 
 def test_scoping_breaks_ties_with_its_own_generator() -> None:
@@ -88,8 +88,8 @@ def test_scoping_gets_stuck() -> None:
     assert (trial.subgoals, trial.action_planning_cost, trial.solution_cost) == (1, 1, 1)
     assert trial.subgoal_planning_cost == 1 + 4
     assert trial.decisions[0].candidates == (
-        planners.Candidate(1, 2, 1, 2.0, 'solved'),
-        planners.Candidate(2, 3, 4, None, 'budget_exhausted'),
+        decisions.Candidate(1, 2, 1, 2.0, 'solved'),
+        decisions.Candidate(2, 3, 4, None, 'budget_exhausted'),
     )
 
 
@@ -105,8 +105,8 @@ def test_scoping_gives_up() -> None:
     (decision,) = trial.decisions
     assert decision.chosen is None
     assert decision.candidates == (
-        planners.Candidate(1, 2, 0, None, 'unsolvable_proven'),
-        planners.Candidate(2, 3, 3, None, 'budget_exhausted'),
+        decisions.Candidate(1, 2, 0, None, 'unsolvable_proven'),
+        decisions.Candidate(2, 3, 3, None, 'budget_exhausted'),
     )
 
 
@@ -114,7 +114,7 @@ def test_scoping_goes_on_from_what_is_built() -> None:
     built = frozenset({(0, 0), (1, 0)})
     trial = planners.scoping(2, 2, full_board(2, 2), LYING, built, search='bfs', depth=1, lam=0.0)
     assert trial.placements == ((2, 1, 0, 1),)
-    assert trial.decisions[0].candidates == (planners.Candidate(2, 2, 1, 2.0, 'solved'),)
+    assert trial.decisions[0].candidates == (decisions.Candidate(2, 2, 1, 2.0, 'solved'),)
 
 
 def test_scoping_knows_its_commit_modes() -> None:
