@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import pytest
 from builders import CHAIR, spec
+from page_fixture import browser, opened, stage, troubles  # noqa: F401
 
 from blocks_planning.subgoals.human import Human
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind
