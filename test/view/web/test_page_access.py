@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from browser import count_of, drag, needs_chromium, press, sees
+from heard_trials import human_spec
 from page_fixture import SCOPED, Opener
 from stage import Stage
 
 from blocks_planning.view.web.health import NOTHING, health_after
-
-from .conftest import human_spec
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

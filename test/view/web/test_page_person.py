@@ -7,13 +7,12 @@ import time
 from typing import Any
 
 from browser import DEADLINE_MS, NARROW, count_of, drag, needs_chromium, point_of, press, sees
+from heard_trials import human_spec
 from page_fixture import SCOPED, Opener
 from stage import Stage
 
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.status import TrialStatus
-
-from .conftest import human_spec
 
 pytestmark = needs_chromium
 

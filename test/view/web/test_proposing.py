@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from builders import CHAIR, task
+from heard_trials import Heard
 
 from blocks_planning.subgoals.proposals import ProposalKind, target_of
 from blocks_planning.trials.execution import SubgoalChosen
@@ -21,8 +22,6 @@ from blocks_planning.view.web.proposing import (
     parse,
 )
 from blocks_planning.view.web.session import Session, session_after
-
-from .conftest import Heard
 
 BOARD = task(CHAIR).board
 EMPTY_ROWS = ['....'] * 6
