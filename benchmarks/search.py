@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
-from oracles import search as oracle
+from oracles.best_first import astar_choice
+from oracles.breadth_first import bfs_choice
 from oracles.randomness import attempt_generator
+from oracles.tree import Task as PlainTask
 
 from benchmarks.measure import Figure, best_rate, seconds
 from blocks_planning.board.kernels.compiling import kernel
@@ -43,17 +45,17 @@ def _bfs_decisions(tasks: list[Task]) -> int:
     return states
 
 
-def _twin(task: Task) -> oracle.Task:
+def _twin(task: Task) -> PlainTask:
     board = task.board
     library = tuple((block.width, block.height) for block in task.library)
-    return oracle.Task(board.width, board.height, library, frozenset(board.cells(task.silhouette)))
+    return PlainTask(board.width, board.height, library, frozenset(board.cells(task.silhouette)))
 
 
 def _twin_bfs_decisions(tasks: list[Task]) -> int:
     states = 0
     for task in tasks:
         generator = attempt_generator(0, frozenset(), _twin(task).region, task.board.height, 0)
-        states += oracle.bfs_choice(_twin(task), frozenset(), generator, depth=DEPTH).cost
+        states += bfs_choice(_twin(task), frozenset(), generator, depth=DEPTH).cost
     return states
 
 
@@ -71,7 +73,7 @@ def _twin_astar(iterations: int) -> int:
     states = 0
     for task in (TASKS[number - 1] for number in TWIN_TOWERS):
         generator = attempt_generator(0, frozenset(), _twin(task).region, task.board.height, 0)
-        states += oracle.astar_choice(
+        states += astar_choice(
             _twin(task),
             frozenset(),
             generator,

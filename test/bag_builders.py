@@ -13,6 +13,7 @@ from typing import Any
 os.environ.setdefault('AMENT_PREFIX_PATH', sys.prefix)
 
 import yaml
+from builders import CHAIR, NEVER_SOLVED, ODD, SQUARE, spec
 from mcap.exceptions import EndOfFile
 from mcap.reader import make_reader
 from mcap.records import Message as McapMessage
@@ -20,6 +21,7 @@ from mcap.stream_reader import StreamReader
 from rclpy.serialization import deserialize_message, serialize_message
 from rosbags.highlevel import AnyReader
 
+from blocks_planning.ros.bagging.bags import RecordedTrial, trials_of
 from blocks_planning.ros.bagging.writer import BagWriter
 from blocks_planning.ros.nodes.bag_recorder import recorded_topic
 from blocks_planning.ros.wire.topics import TOPICS, Topic
@@ -29,6 +31,13 @@ from blocks_planning.trials.messages import Message
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 
+SPECS = [
+    spec(SQUARE, stimulus='square', search='bfs', depth=1),
+    spec(CHAIR, stimulus='chair'),
+    spec(CHAIR, stimulus='chair', strategy='full', lam=0.5, search='random'),
+    spec(ODD, stimulus='odd', strategy='none', search='exact'),
+    spec(NEVER_SOLVED, stimulus='never'),
+]
 START_NS = 1_700_000_000_000_000_000
 _TOPIC_OF = {topic.kind: topic for topic in TOPICS}
 _BY_NAME = {topic.name: topic for topic in TOPICS}
@@ -122,3 +131,16 @@ def _messages_on_disk(path: Path) -> Iterator[McapMessage]:
                     yield record
         except (EndOfFile, Exception):  # noqa: BLE001  a file that is being written
             return
+
+
+def held_complaints(bag: Path) -> list[str]:
+    refused: list[str] = []
+    found = [
+        sentence for one in trials_of(bag, refused.append) for sentence in one.contradictions()
+    ]
+    return refused + found
+
+
+def only_trial(bag: Path) -> RecordedTrial:
+    [trial] = trials_of(bag)
+    return trial

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -64,3 +65,24 @@ def drag(page: Page, start: tuple[int, int], end: tuple[int, int]) -> None:
     page.mouse.down()
     page.mouse.move(*point_of(page, *end), steps=3)
     page.mouse.up()
+
+
+def sees(page: Page, selector: str, text: str | re.Pattern[str]) -> None:
+    """Wait until a part of the page holds a text."""
+    from playwright.sync_api import expect
+
+    expect(page.locator(selector)).to_be_visible()
+    expect(page.locator(selector)).to_contain_text(text)
+
+
+def count_of(page: Page, selector: str, count: int) -> None:
+    """Wait until there are so many of something on the page."""
+    from playwright.sync_api import expect
+
+    expect(page.locator(selector)).to_have_count(count)
+
+
+def press(page: Page, keys: str) -> None:
+    """Press keys one after the other."""
+    for key in keys.split():
+        page.keyboard.press(key)

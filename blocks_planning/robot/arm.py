@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from blocks_planning.robot.scene import DAMPING, STIFFNESS, TIMESTEP
+from blocks_planning.robot.gantry import DAMPING, STIFFNESS
+from blocks_planning.robot.scene import TIMESTEP
 from blocks_planning.robot.sizes import Sizes
 
 ACCELERATION = 2.0

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from blocks_planning.board.blocks import Block
 from blocks_planning.extras import extra
-from blocks_planning.robot.scene import DAMPING, JOINTS, STIFFNESS, Body, Pose, model_text
+from blocks_planning.robot.gantry import DAMPING, JOINTS, STIFFNESS
+from blocks_planning.robot.scene import Body, Pose, model_text
 from blocks_planning.robot.settings import RobotSettings
 from blocks_planning.robot.sizes import Sizes
 

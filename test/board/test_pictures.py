@@ -1,46 +1,18 @@
-"""Text pictures: what the reader takes, what it refuses and where it says the fault is."""
+"""Silhouettes in text: what is read, and what is refused where."""
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 from builders import picture
-from hypothesis import example, given
+from drawings import ARCH, ARCH_READ, STEP, STEP_READ, drawn, refused
+from hypothesis import given
 from hypothesis import strategies as st
-from strategies import boards
 
-from blocks_planning.board.geometry import MAX_SIDE, Board, Mask
-from blocks_planning.board.pictures import (
-    MAX_FILE_BYTES,
-    format_silhouette,
-    parse_silhouettes,
-    read_file,
-)
+from blocks_planning.board.geometry import MAX_SIDE, Board
+from blocks_planning.board.pictures import format_silhouette, parse_silhouettes
 from blocks_planning.board.stimuli import Stimulus
-from blocks_planning.errors import StimulusError
 
-ARCH = '###\n#.#\n#.#\n'
-STEP = '#.\n##\n'
-ARCH_READ = picture('###/#.#/#.#')
-STEP_READ = picture('#./##')
 SIDES = range(1, MAX_SIDE + 1)
-
-
-def refused(text: str, origin: str = 'towers') -> str:
-    """The message with which a text is refused."""
-    with pytest.raises(StimulusError) as caught:
-        parse_silhouettes(text, origin)
-    return one_line(caught.value)
-
-
-def one_line(error: StimulusError) -> str:
-    """The message of an error, which has one line."""
-    message = str(error)
-    assert len(message.splitlines()) == 1
-    return message
 
 
 @pytest.mark.parametrize('width', SIDES)
@@ -164,93 +136,13 @@ def test_text_without_a_picture_is_refused(text: str) -> None:
     assert "'#'" in message
 
 
-@pytest.mark.parametrize(
-    'data', [b'\xef\xbb\xbf' + ARCH.encode(), ARCH.encode()], ids=['BOM', 'no']
-)
-def test_file_may_begin_with_a_byte_order_mark(tmp_path: Path, data: bytes) -> None:
-    path = tmp_path / 'arch.txt'
-    path.write_bytes(data)
-    assert read_file(path) == {'1': ARCH_READ}
-
-
-def test_fault_in_a_file_is_named_with_the_file(tmp_path: Path) -> None:
-    path = tmp_path / 'my towers.txt'
-    path.write_text('##\n#?\n')
-    with pytest.raises(StimulusError) as caught:
-        read_file(path)
-    assert str(caught.value) == f"{path}, line 2, column 2: expected '#' or '.', got '?'"
-
-
-@pytest.mark.parametrize(
-    ('data', 'words'),
-    [
-        pytest.param(b'##\n\xff\xfe', 'is not a text file (byte 3)', id='no UTF-8'),
-        pytest.param('##'.encode('utf-16'), 'is not a text file (byte 0)', id='UTF-16'),
-        pytest.param(
-            b'\x89PNG\r\n\x1a\n\0\0\0\r', 'is not a text file (byte 0)', id='picture file'
-        ),
-        pytest.param(b'#\n' * (MAX_FILE_BYTES // 2) + b'#', 'is larger than', id='too large'),
-    ],
-)
-def test_file_that_is_no_text_is_refused(tmp_path: Path, data: bytes, words: str) -> None:
-    path = tmp_path / 'towers.txt'
-    path.write_bytes(data)
-    with pytest.raises(StimulusError) as caught:
-        read_file(path)
-    assert one_line(caught.value).startswith(f'{path}: {words}')
-
-
-def test_file_of_the_largest_size_is_read(tmp_path: Path) -> None:
-    path = tmp_path / 'towers.txt'
-    path.write_bytes(STEP.encode() + b'\n' * (MAX_FILE_BYTES - len(STEP)))
-    assert read_file(path) == {'1': STEP_READ}
-
-
-def test_directory_missing_and_unreadable_files_are_refused(tmp_path: Path) -> None:
-    loop = tmp_path / 'loop'
-    loop.symlink_to(loop)
-    for path, words in (
-        (tmp_path, 'is a directory; name a file in it'),
-        (tmp_path / 'missing.txt', 'cannot be read: No such file or directory'),
-        (tmp_path / 'missing' / 'x.txt', 'cannot be read: No such file or directory'),
-        (loop, 'cannot be read: Too many levels of symbolic links'),
-        (tmp_path / ('x' * 300), 'cannot be read: File name too long'),
-    ):
-        with pytest.raises(StimulusError) as caught:
-            read_file(path)
-        assert one_line(caught.value) == f'{path}: {words}'
-
-
-def test_path_with_a_nul_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(StimulusError):
-        read_file(tmp_path / 'a\0b')
-
-
-def test_one_endless_line_is_refused_at_once(tmp_path: Path) -> None:
-    path = tmp_path / 'towers.txt'
-    path.write_bytes(b'# ' * (MAX_FILE_BYTES // 2))
-    code = (
-        'import sys; from pathlib import Path; '
-        'from blocks_planning.board.pictures import read_file; read_file(Path(sys.argv[1]))'
-    )
-    command = [sys.executable, '-c', code, str(path)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=20)
-    assert 'line 1, column 2' in done.stderr
-
-
 @given(st.data())
 def test_what_is_drawn_is_read_back(data: st.DataObject) -> None:
-    pictures = data.draw(st.lists(_pictures(), min_size=1, max_size=4))
+    pictures = data.draw(st.lists(drawn(), min_size=1, max_size=4))
     text = '\n\n'.join(board.draw(mask) for board, mask in pictures)
     assert list(parse_silhouettes(text, 'x').values()) == pictures
     for board, mask in pictures:
         assert board.parse(Stimulus('x', board, mask).draw().split('\n')) == mask
-
-
-@st.composite
-def _pictures(draw: st.DrawFn) -> tuple[Board, Mask]:
-    board = draw(boards())
-    return board, draw(st.integers(0, board.full))
 
 
 @given(st.data())
@@ -264,102 +156,8 @@ def test_a_row_of_another_length_is_found_where_it_is(data: st.DataObject) -> No
     assert refused('\n'.join(rows)).startswith(f'towers, line {index + 1}, column {column}: ')
 
 
-def read_or_refused(path: Path) -> dict[str, tuple[Board, Mask]]:
-    """The pictures of a file; none if it is refused as it should be."""
-    try:
-        read = read_file(path)
-    except StimulusError as error:
-        message = one_line(error).removeprefix(str(path))
-        assert message.startswith((', line ', ': found no silhouette', ': is not a text file'))
-        return {}
-    assert read
-    return read
-
-
-@given(st.binary(max_size=300))
-@example(b'')
-@example(b'\xef\xbb\xbf')
-@example(b'#\r')
-def test_any_bytes_are_read_or_refused(
-    tmp_path_factory: pytest.TempPathFactory, data: bytes
-) -> None:
-    path = tmp_path_factory.getbasetemp() / 'any.txt'
-    path.write_bytes(data)
-    read_or_refused(path)
-
-
-_PIECES = [
-    '#',
-    '.',
-    ' ',
-    '\t',
-    '\r',
-    '\n',
-    '\r\n',
-    '# x',
-    'tower 1\n',
-    'tower a\n',
-    '\0',
-    '\ufeff',
-    'é',
-]
-
-
-@given(st.data())
-def test_damaged_text_is_read_or_refused_with_a_place(
-    tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
-) -> None:
-    text = f'# Two towers.\n#\n# See below.\ntower a\n{ARCH}\n\n{STEP}'
-    for _ in range(data.draw(st.integers(1, 4))):
-        start = data.draw(st.integers(0, len(text)))
-        pieces = data.draw(st.lists(st.sampled_from(_PIECES), max_size=2))
-        text = text[:start] + ''.join(pieces) + text[start + data.draw(st.integers(0, 3)) :]
-    path = tmp_path_factory.getbasetemp() / 'damaged.txt'
-    path.write_text(text)
-    for board, mask in read_or_refused(path).values():
-        assert board.parse(board.draw(mask).split('\n')) == mask
-
-
-# Margins.
-
-
-@pytest.mark.parametrize(
-    ('rows', 'expected'),
-    [
-        pytest.param(['.' * 9 + '###' + '.' * 9, '.' * 9 + '#.#' + '.' * 9], '###/#.#', id='wide'),
-        pytest.param(['....'] * 20 + ['.##.'], '.##.', id='high'),
-        pytest.param(['.' * 20] * 9 + ['##' + '.' * 18] + ['.' * 20] * 9, '##', id='all around'),
-        pytest.param(['#' + '.' * 16] * 2, '#/#', id='one column too many'),
-        pytest.param(['#' + '.' * 14 + '#.'], '#' + '.' * 14 + '#', id='just fits'),
-    ],
-)
-def test_margins_beyond_the_largest_board_are_trimmed(rows: list[str], expected: str) -> None:
-    assert parse_silhouettes('\n'.join(rows), 'x') == {'1': picture(expected)}
-
-
-def test_margins_of_a_board_are_kept() -> None:
-    rows = ['.' * 16] * 15 + ['.#' + '.' * 14]
-    board, mask = parse_silhouettes('\n'.join(rows), 'x')['1']
-    assert (board, mask) == (Board(16, 16), board.mask([(1, 0)]))
-
-
-@pytest.mark.parametrize(
-    ('text', 'place', 'words'),
-    [
-        ('...' + '#' * 17 + '..', 'line 1, column 20', 'this one has 17'),
-        ('.\n' * 3 + '#\n' * 17, 'line 20', 'between its empty margins'),
-        ('.' * 17, 'line 1, column 17', 'this one has 17'),
-        ('.\n' * 17, 'line 17', 'row 17'),
-    ],
-)
-def test_a_tower_larger_than_any_board_is_refused(text: str, place: str, words: str) -> None:
-    message = refused(text)
-    assert message.startswith(f'towers, {place}: ')
-    assert words in message
-
-
 @given(st.data())
 def test_what_is_written_is_read_back(data: st.DataObject) -> None:
-    board, mask = data.draw(_pictures())
+    board, mask = data.draw(drawn())
     text = format_silhouette('gate', board, mask, ['cells 9, holes 1', 'made by hand'])
     assert parse_silhouettes(text, 'x') == {'gate': (board, mask)}

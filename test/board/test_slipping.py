@@ -9,8 +9,8 @@ import pytest
 from oracles.board import Placement as PlainPlacement
 from oracles.randomness import Generator as PlainGenerator
 from oracles.randomness import key_from_words
-from oracles.search import Task as PlainTask
 from oracles.slipping import outcomes
+from oracles.tree import Task as PlainTask
 from problems import random_problem
 
 from blocks_planning.board import rules

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import random
 import signal
-import subprocess
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from graphs import COMMAND, local_lines, record_lines, write_script
+from graphs import write_script
 from peers import Graph
 
-from blocks_planning.ros.bagging import bags
+from faults.judging import judge
 from faults.plan import BRINGUP, Fault, make_plan
 from faults.report import Report
 from faults.subject import Observer, Subject, send
 
 RECOVERY_BOUND_S = 120.0
-STOP_BOUND_S = 6.0
-SECOND_RUN_BOUND_S = 180.0
 _PHASE_BOUND_S = 2.0
 _FILE_LOOK_S = 0.03
 _TRIGGERS = {'idle': 'outcome', 'searching': 'search/request', 'placing': 'action'}
@@ -122,7 +119,7 @@ class Harness:
         code = subject.exit_code()
         if code not in (0, 1):
             self._complain(f'the graph ended with {code}: see {subject.console}')
-        self._judge(script, out)
+        judge(subject, self.report, script, out)
 
     # Faults
 
@@ -277,39 +274,5 @@ class Harness:
                 raise _Over
         return True
 
-    # What must hold
-
-    def _judge(self, script: Path, out: Path) -> None:
-        subject = self._subject
-        for left in subject.left_over(STOP_BOUND_S):
-            self._complain(f'still there: {left}')
-        console = subject.console.read_text(encoding='utf-8', errors='replace')
-        if 'Traceback' in console:
-            self._complain(f'a traceback in {subject.console}')
-        expected = local_lines(script)
-        self.report.compare(record_lines(out), expected)
-        for bag in subject.bags:
-            for complaint in verify_bag(bag):
-                self._complain(f'{bag}: {complaint}')
-        begun = time.monotonic()
-        again = subprocess.run(
-            [*COMMAND, str(script), '--out', str(out)],
-            capture_output=True,
-            text=True,
-            timeout=SECOND_RUN_BOUND_S,
-        )
-        self.report.restarts_s.append(time.monotonic() - begun)
-        if again.returncode not in (0, 1) or record_lines(out) != expected:
-            self._complain(f'the second run ended with {again.returncode}: {again.stderr}')
-
     def _complain(self, sentence: str) -> None:
         self.report.complaints.append(sentence)
-
-
-def verify_bag(bag: Path) -> list[str]:
-    """What does not hold in a bag, as ``blocks-planning verify`` says it."""
-    bags.repair(bag)
-    complaints: list[str] = []
-    for trial in bags.trials_of(bag, complaints.append):
-        complaints += trial.contradictions()
-    return complaints

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 from graphs import local_lines, write_script
 
-from faults.harness import Harness, verify_bag
+from faults.harness import Harness
+from faults.judging import verify_bag
 from faults.plan import BRINGUP, NODES, PHASES, make_plan
 from faults.report import Report
 

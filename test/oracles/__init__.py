@@ -6,10 +6,12 @@ imported from the package under test. Only the standard library is used.
 
 * ``randomness``: the generator every draw comes from
 * ``board``: how blocks fall, which placements are possible and legal
-* ``search``: one attempt of random, bfs, astar or best_first
+* ``tree``: what every search explores; ``breadth_first``, ``best_first``, ``beam`` and
+  ``monte_carlo``: the searches; ``search``: one attempt with any of them
 * ``slipping``: success where blocks slip, of the best orders, bfs and random
 * ``statics``: whether loose blocks stand
 * ``exact``: fewest blocks and number of complete arrangements, in two independent ways
 * ``lookahead``: sequences of subgoals, and choice by probability
-* ``planners``: solve (attempts and budget), none, scoping, full
+* ``solving``: attempts at a region within a budget
+* ``decisions``: candidates, decisions, trials; ``planners``: none, scoping, full
 """

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from oracles.board import Block, Cells, rows
-from oracles.planners import SOLVED, region_heights, solve
+from oracles.decisions import region_heights
 from oracles.randomness import Generator, key_from_words, mask_of, words_of
 from oracles.regions import rectangles
+from oracles.solving import SOLVED, solve
 
 Ways = Callable[[Cells], list[Cells]]
 

@@ -1,140 +1,24 @@
-"""Solving a region by attempts, and the three subgoal-level planners, word by word.
-
-Nothing is cached: a region is solved again each time somebody asks.
-"""
+"""The three subgoal-level planners, word by word."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
-from oracles.board import EMPTY, Block, Cells, Placement, legal_placements, place, rows
-from oracles.randomness import subgoal_generator
-from oracles.search import attempt, check_at_least
-
-SOLVED = 'solved'
-UNSOLVABLE_PROVEN = 'unsolvable_proven'
-BUDGET_EXHAUSTED = 'budget_exhausted'
-
-SUCCESS = 'success'
-STUCK = 'stuck'
-GAVE_UP = 'gave_up'
-
-DEFAULT_BUDGET = 100_000
-
-
-@dataclass(frozen=True)
-class Solution:
-    """What solving a region gave; costs in states evaluated.
-
-    solution_cost is the cost of the successful attempt (0 if none), planning_cost that of all.
-    """
-
-    status: str
-    placements: tuple[Placement, ...]
-    solution_cost: int
-    planning_cost: int
-    attempts: int
-    last_attempt: tuple[Placement, ...] = ()
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """What a planner considered: the region rows(k), or for full a sequence of them (k a tuple).
-
-    cells: r, what it adds [cells]. cost: c, its planning cost [states], for a sequence up to and
-    with its first unsolved subgoal. value: V, or None when unsolved (or the planner has no V).
-    status: that of the solve, for a sequence that of its last subgoal solved or tried.
-    """
-
-    k: int | tuple[int, ...]
-    cells: int
-    cost: int
-    value: float | None
-    status: str
-
-
-@dataclass(frozen=True)
-class Decision:
-    """The candidates a planner considered at a state, and the k of the chosen one, if any."""
-
-    built: Cells
-    candidates: tuple[Candidate, ...]
-    chosen: int | tuple[int, ...] | None
-
-
-@dataclass(frozen=True)
-class Trial:
-    """What a planner did with a silhouette; costs in states evaluated."""
-
-    status: str
-    placements: tuple[Placement, ...]
-    blocks: int
-    subgoals: int
-    action_planning_cost: int
-    subgoal_planning_cost: int
-    solution_cost: int
-    decisions: tuple[Decision, ...]
-
-
-def solve(
-    width: int,
-    height: int,
-    library: Sequence[Block],
-    region: Cells,
-    built: Cells,
-    seed: int,
-    /,
-    *,
-    search: str,
-    budget: int = DEFAULT_BUDGET,
-    **settings: Any,
-) -> Solution:
-    """Attempt after attempt until one fills `region` or the budget [states] is used up.
-
-    settings: those of the search, e.g. depth, iterations, divisor, execute.
-    Raises ValueError when something is built outside the region.
-    """
-    check_at_least('budget', budget, 0)
-    if not built <= region:
-        raise ValueError(f'built outside the region: {sorted(built - region)}')
-    if built == region:
-        return Solution(SOLVED, (), 0, 0, 0)
-    if not legal_placements(width, height, library, region, built):
-        return Solution(UNSOLVABLE_PROVEN, (), 0, 0, 0)
-    cost = 0
-    for number in range(max(1, budget)):
-        result = attempt(
-            width, height, library, region, built, seed, number, search=search, **settings
-        )
-        cost += result.cost
-        if result.success:
-            return Solution(SOLVED, result.placements, result.cost, cost, number + 1)
-        if cost >= budget:
-            break
-    return Solution(BUDGET_EXHAUSTED, (), 0, cost, number + 1, tuple(result.placements))
-
-
-def region_heights(silhouette: Cells, height: int, built: Cells) -> list[int]:
-    """Each k whose region strictly contains what is built and differs from every lower one."""
-    return [
-        k
-        for k in range(1, height + 1)
-        if built < rows(silhouette, k) and rows(silhouette, k) != rows(silhouette, k - 1)
-    ]
-
-
-def ended(
-    width: int, height: int, library: Sequence[Block], silhouette: Cells, built: Cells
-) -> str | None:
-    """The status of a trial that is over before a planner is asked, else None."""
-    if built == silhouette:
-        return SUCCESS
-    if not legal_placements(width, height, library, silhouette, built):
-        return STUCK
-    return None
+from oracles.board import EMPTY, Block, Cells, Placement, place, rows
+from oracles.decisions import (
+    GAVE_UP,
+    STUCK,
+    SUCCESS,
+    Candidate,
+    Decision,
+    Trial,
+    ended,
+    pick_best,
+    region_heights,
+)
+from oracles.solving import DEFAULT_BUDGET, SOLVED, Solution, solve
 
 
 def none(
@@ -269,17 +153,6 @@ def scoping_candidates(
         candidates.append(Candidate(k, cells, cost, value, solution.status))
         solutions[k] = solution
     return candidates, solutions
-
-
-def pick_best(
-    candidates: Sequence[Candidate], seed: int, built: Cells, height: int
-) -> int | tuple[int, ...] | None:
-    """The k of a candidate of highest V, ties uniformly; None when none is solved."""
-    values = [candidate.value for candidate in candidates if candidate.value is not None]
-    if not values:
-        return None
-    ties = [candidate.k for candidate in candidates if candidate.value == max(values)]
-    return ties[subgoal_generator(seed, built, height).below(len(ties))]
 
 
 def sequences_of(heights: Sequence[int]) -> list[tuple[int, ...]]:

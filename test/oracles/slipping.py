@@ -11,7 +11,7 @@ from fractions import Fraction
 from functools import cache
 
 from oracles.board import Cells, Placement, cells_of, drop, is_possible
-from oracles.search import Node, Path, Task, best_nodes, children, worth_with_dead_ends_last
+from oracles.tree import Node, Path, Task, best_nodes, children, worth_with_dead_ends_last
 
 Outcomes = dict[Placement | None, Fraction]
 

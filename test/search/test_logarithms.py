@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from oracles.search import natural_logarithm
+from oracles.monte_carlo import natural_logarithm
 
 from blocks_planning.search.logarithms import natural
 

@@ -8,8 +8,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from oracles.search import Task as PlainTask
 from oracles.slipping import bfs_success, optimum, random_success
+from oracles.tree import Task as PlainTask
 from problems import random_problem
 
 from blocks_planning.board import rules

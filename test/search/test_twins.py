@@ -6,8 +6,10 @@ import random
 from typing import Any
 
 import pytest
-from oracles import planners as oracle
 from oracles import search as oracle_search
+from oracles import solving
+from oracles.breadth_first import count_tree
+from oracles.tree import Task as PlainTask
 from problems import random_problem
 
 from blocks_planning.board.blocks import Block
@@ -75,7 +77,7 @@ def test_a_solve_is_that_of_the_slow_twin(name: str, settings: dict[str, Any]) -
         problem = random_problem(source)
         board = problem.task.board
         seed, budget = source.getrandbits(64), source.choice([0, 30, 300])
-        expected = oracle.solve(
+        expected = solving.solve(
             board.width,
             board.height,
             [(block.width, block.height) for block in problem.task.library],
@@ -100,8 +102,8 @@ def test_counts_are_those_of_the_slow_twin() -> None:
         task = random_problem(source).task
         library = tuple((block.width, block.height) for block in task.library)
         region = frozenset(task.board.cells(task.silhouette))
-        twin = oracle_search.Task(task.board.width, task.board.height, library, region)
-        expected = [oracle_search.count_tree(twin, frozenset(), depth) for depth in (1, 2, 3)]
+        twin = PlainTask(task.board.width, task.board.height, library, region)
+        expected = [count_tree(twin, frozenset(), depth) for depth in (1, 2, 3)]
         assert count_nodes(task, 3, CancelToken()) == expected
 
 

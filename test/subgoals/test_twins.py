@@ -6,6 +6,7 @@ import random
 from typing import Any
 
 import pytest
+from oracles import decisions
 from oracles import planners as oracle
 from problems import random_problem
 
@@ -58,7 +59,7 @@ def _decision(decision: Decision, board: Board) -> tuple[Any, ...]:
     return frozenset(board.cells(decision.built)), candidates, chosen
 
 
-def _twin_decision(decision: oracle.Decision) -> tuple[Any, ...]:
+def _twin_decision(decision: decisions.Decision) -> tuple[Any, ...]:
     def heights(k: int | tuple[int, ...] | None) -> tuple[int, ...] | None:
         return (k,) if isinstance(k, int) else k
 
@@ -66,10 +67,10 @@ def _twin_decision(decision: oracle.Decision) -> tuple[Any, ...]:
     return decision.built, candidates, heights(decision.chosen)
 
 
-def _twin_trial(spec: TrialSpec, strategy: str, settings: dict[str, Any]) -> oracle.Trial:
+def _twin_trial(spec: TrialSpec, strategy: str, settings: dict[str, Any]) -> decisions.Trial:
     task, search = spec.task, spec.to_json()
     names = {'lambda': 'lam'}
-    trial: oracle.Trial = getattr(oracle, strategy)(
+    trial: decisions.Trial = getattr(oracle, strategy)(
         task.board.width,
         task.board.height,
         frozenset(task.board.cells(task.silhouette)),

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from builders import CHAIR, NEVER_SOLVED, spec
+from heard_trials import Heard, heard, human_spec, person_says
 
 from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.messages import ProposalMade, TrialStarted
@@ -19,8 +20,6 @@ from blocks_planning.view.web.frame import Seen, frame_json
 from blocks_planning.view.web.health import NOTHING, health_after
 from blocks_planning.view.web.queue import Queue
 from blocks_planning.view.web.session import Past, Session, session_after
-
-from .conftest import Heard, heard, human_spec, person_says
 
 COSTLY = {
     'action_cost',

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from builders import CHAIR, task
+from heard_trials import Heard
 
 from blocks_planning.subgoals.drawn import MalformedProposal, Refused, judge_region
 from blocks_planning.subgoals.proposals import ProposalKind, target_of
@@ -16,8 +17,6 @@ from blocks_planning.trials.messages import ProposalMade
 from blocks_planning.view.web.pictures import rows_of
 from blocks_planning.view.web.proposing import judge, parse
 from blocks_planning.view.web.session import Session, session_after
-
-from .conftest import Heard
 
 BOARD = task(CHAIR).board
 EMPTY_ROWS = ['....'] * 6

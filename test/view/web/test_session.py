@@ -8,6 +8,7 @@ from functools import reduce
 
 import pytest
 from builders import CHAIR, spec
+from heard_trials import Heard, heard
 
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind
 from blocks_planning.trials.execution import SubgoalChosen
@@ -24,8 +25,6 @@ from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view.scene import last_scene
 from blocks_planning.view.web import session as module
 from blocks_planning.view.web.session import Session, session_after, turn_of, with_told_again
-
-from .conftest import Heard, heard
 
 
 def after(messages: Sequence[Message], start: Session | None = None) -> Session:
