@@ -38,8 +38,9 @@ def study() -> None:
 
 
 @study.command(
-    epilog='\b\nExamples:\n  blocks-planning study config/studies/example.yaml --out my_study\n'
-    '  blocks-planning study my_study.yaml --out my_study --host 0.0.0.0 --port 8000'
+    epilog='\b\nExamples:\n'
+    '  blocks-planning study serve config/studies/example.yaml --out my_study\n'
+    '  blocks-planning study serve study.yaml --out my_study --host 0.0.0.0 --port 8000'
 )
 @click.argument('file', metavar='STUDY.yaml', type=_PATH)
 @out_option
@@ -84,7 +85,7 @@ def serve(file: Path, out: Path, host: str, port: int) -> None:
     server.stop()
 
 
-@study.command()
+@study.command(epilog='\b\nExample:\n  blocks-planning study export my_study --out tables')
 @click.argument('folder', metavar='DIR', type=_PATH)
 @out_option
 def export(folder: Path, out: Path) -> None:

@@ -43,7 +43,7 @@ def test_bytes_that_say_nothing_are_refused() -> None:
     data = serialize_message(STATE.to_ros(TRIAL_SPEC.task.board, STATES[-1]))
     assert read_message(STATE.ros_type, data).sequence == len(RECORD.placements)
     for spoilt in (b'', data[:4], data[:20], data[:-1], b'\xff' * 64):
-        with pytest.raises(MessageError, match=f'its {len(spoilt)} bytes are no WorldState'):
+        with pytest.raises(MessageError, match=f'its {len(spoilt)} bytes are not a WorldState'):
             read_message(STATE.ros_type, spoilt)
     with pytest.raises(MessageError, match='up to'):
         read_message(STATE.ros_type, data + bytes(guarded.MOST_BYTES))

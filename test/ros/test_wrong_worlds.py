@@ -5,6 +5,7 @@ The bounds are those of the defaults; the clock of the orchestrator is put forwa
 
 from __future__ import annotations
 
+import re
 import threading
 from dataclasses import replace
 from pathlib import Path
@@ -57,11 +58,18 @@ class Orchestrator(TrialOrchestrator):
 class Trial:
     """A trial in a graph whose world is a driver."""
 
-    def __init__(self, graph: Graph, folder: Path, act: Act, driver: Any = Driver) -> None:
+    def __init__(
+        self,
+        graph: Graph,
+        folder: Path,
+        act: Act,
+        driver: Any = Driver,
+        retries: int = RETRIES,
+    ) -> None:
         self.graph = graph
         graph.add(subgoal_selector.make_node, parameter_overrides=FAST)
         graph.add(ActionSearcher, parameter_overrides=FAST)
-        values = {'out_dir': str(folder), 'wait_for': NODES, 'retries': RETRIES}
+        values = {'out_dir': str(folder), 'wait_for': NODES, 'retries': retries}
         overrides = [*FAST, *(Parameter(name, value=value) for name, value in values.items())]
         self.node = graph.add(
             lambda **options: Orchestrator(
@@ -125,8 +133,7 @@ def test_trial_ends_if_its_world_never_answers(graph: Graph, tmp_path: Path, owe
     act, driver, what = SILENT_WORLDS[owed]
     ended = Trial(graph, tmp_path, act, driver).ended_by_silence()
     assert ended.status is TrialStatus.CANCELLED
-    assert ended.reason.startswith('the world has been silent for 31.')
-    assert ended.reason.endswith(what)
+    assert re.fullmatch(rf'the world has been silent for [3-9]\d\.\d s .*{what}', ended.reason)
 
 
 def shows(wrong: Placed, shift: int = 0) -> Act:
@@ -273,4 +280,5 @@ def is_set_back_once(driver: Driver, order: PlaceBlock) -> None:
 
 @pytest.mark.parametrize('act', [is_emptied_once, is_set_back_once])
 def test_board_that_is_changed_once_is_built_anew(graph: Graph, tmp_path: Path, act: Act) -> None:
-    assert Trial(graph, tmp_path, act).ended().status is TrialStatus.SUCCESS
+    trial = Trial(graph, tmp_path, act, retries=50)  # nodes hear of it at different times
+    assert trial.ended().status is TrialStatus.SUCCESS

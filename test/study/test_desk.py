@@ -62,5 +62,5 @@ def test_the_file_of_another_study_is_refused(
 
 def test_two_servers_do_not_share_a_folder(opened: Callable[[], Desk], tmp_path: Path) -> None:
     study = opened().study
-    with pytest.raises(RecordError, match='is being written by another process'):
+    with pytest.raises(RecordError, match='another process is writing it'):
         StudyFolder(tmp_path / 'out', study, wait_s=0)
