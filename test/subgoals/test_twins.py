@@ -14,7 +14,7 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals.decision import Candidate, Decision
-from blocks_planning.subgoals.registry import make_strategy
+from blocks_planning.subgoals.registry import make_strategy, planner_names
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.spec import TrialSpec
 
@@ -85,6 +85,10 @@ def _twin_trial(spec: TrialSpec, strategy: str, settings: dict[str, Any]) -> dec
     return trial
 
 
+def test_every_strategy_that_decides_has_a_twin() -> None:
+    assert {name for name, _ in STRATEGIES} == set(planner_names())
+
+
 @pytest.mark.parametrize('search', SEARCHES, ids=lambda search: search[0])
 @pytest.mark.parametrize(
     'strategy', STRATEGIES, ids=lambda item: '-'.join(map(str, [item[0], *item[1].values()]))
@@ -93,7 +97,7 @@ def test_a_trial_is_that_of_the_slow_twin(
     strategy: tuple[str, dict[str, Any]], search: tuple[str, dict[str, Any]]
 ) -> None:
     source = random.Random(f'{strategy}{search}')
-    for _ in range(12):
+    for _ in range(8):
         task: Task = random_problem(source, widest=4, highest=5).task
         if task.board.size > 20 and strategy[0] == 'full':
             continue
