@@ -18,46 +18,55 @@ class Column(NamedTuple):
 
 _WHO = Column('participant', str, '', 'code of the participant')
 _STEP = Column('step', int, '', 'step of the participant, from 0; names a trial of a participant')
-_SEQUENCE = Column('sequence', int, '', 'number of blocks that were placed before, in this trial')
-_AT = Column('at', str, 'UTC', 'when, on the clock of the wall')
-_STEADY = Column('steady_s', float, 's', 'when, on a clock that never steps; see docs/study.md')
+_SEQUENCE = Column('sequence', int, '', 'number of blocks placed earlier in this trial')
+_AT = Column('at', str, 'UTC', 'time of the event, on the wall clock')
+_STEADY = Column(
+    'steady_s', float, 's', 'time of the event, on a monotonic clock; see docs/study.md'
+)
 _RESULTS = (
     Column(
-        'status', str, '', 'how it ended: success, stuck, gave_up, cancelled; empty: it did not'
+        'status',
+        str,
+        '',
+        'end of the trial: success, stuck, gave_up or cancelled; empty: not ended',
     ),
-    Column('reason', str, '', 'why it was cancelled'),
-    Column('blocks', int, 'blocks', 'that stand at the end'),
+    Column('reason', str, '', 'reason for the cancellation'),
+    Column('blocks', int, 'blocks', 'number of blocks at the end'),
     Column('recall', float, '0 to 1', 'share of the target cells that are filled'),
     Column('precision', float, '0 to 1', 'share of the filled cells that are target cells'),
     Column('f1', float, '0 to 1', 'harmonic mean of recall and precision'),
-    Column('iou', float, '0 to 1', 'cells that are both, by cells that are either'),
+    Column(
+        'iou', float, '0 to 1', 'cells both filled and target, divided by cells filled or target'
+    ),
 )
 TABLES: Mapping[str, tuple[Column, ...]] = MappingProxyType(
     {
         'participants': (
             _WHO,
-            Column('number', int, '', 'of the participant, from 0; the orders follow from it'),
-            Column('status', str, '', 'finished, stopped, declined, or running: none of these'),
-            Column('began_at', str, 'UTC', 'first event'),
-            Column('last_at', str, 'UTC', 'last event'),
-            Column('visits', int, '', 'how often the page was connected'),
+            Column(
+                'number', int, '', 'number of the participant, from 0; it determines the orders'
+            ),
+            Column('status', str, '', 'finished, stopped, declined or running'),
+            Column('began_at', str, 'UTC', 'time of the first event'),
+            Column('last_at', str, 'UTC', 'time of the last event'),
+            Column('visits', int, '', 'number of connections of the page'),
         ),
         'trials': (
             _WHO,
             _STEP,
             Column('phase', str, '', 'practice or trial'),
-            Column('number', int, '', 'of the trial in its phase, from 1'),
+            Column('number', int, '', 'number of the trial in its phase, from 1'),
             Column('condition', str, '', 'name of the condition'),
-            Column('mode', str, '', 'what was done: scoping or building'),
+            Column('mode', str, '', 'scoping or building'),
             Column('tower', str, '', 'address of the silhouette'),
-            Column('seed', int, '', 'of the trial'),
-            Column('time_limit_s', int, 's', 'of the trial; 0: none'),
-            Column('trial_id', str, '', 'names the record in records/CONDITION.jsonl'),
-            Column('began_at', str, 'UTC', 'when the trial was first ready to be shown'),
-            Column('ended_at', str, 'UTC', 'when it ended'),
-            Column('proposals', int, '', 'regions or blocks that were proposed, or withdrawn'),
+            Column('seed', int, '', 'seed of the trial'),
+            Column('time_limit_s', int, 's', 'time limit of the trial; 0: none'),
+            Column('trial_id', str, '', 'id of the record in records/CONDITION.jsonl'),
+            Column('began_at', str, 'UTC', 'time at which the trial was first ready to be shown'),
+            Column('ended_at', str, 'UTC', 'time of the end'),
+            Column('proposals', int, '', 'number of proposed or withdrawn regions or blocks'),
             Column(
-                'refused', int, '', 'wishes that cannot be had, such as a block that sticks out'
+                'refused', int, '', 'number of refused requests, such as a block that sticks out'
             ),
             *_RESULTS,
         ),
@@ -65,13 +74,23 @@ TABLES: Mapping[str, tuple[Column, ...]] = MappingProxyType(
             _WHO,
             _STEP,
             _SEQUENCE,
-            Column('number', int, '', 'of the proposal in this state, from 0'),
+            Column('number', int, '', 'number of the proposal in this state, from 0'),
             Column('kind', str, '', 'build, withdrawn or give_up'),
-            Column('region', str, 'mask', 'cells, hexadecimal: bit column x height + row'),
             Column(
-                'outcome', str, '', 'of kind build: built or failed; empty: the trial did not end'
+                'region', str, 'mask', 'cells as a hexadecimal number: bit column x height + row'
             ),
-            Column('thinking_s', float, 's', 'from seeing the state to proposing, on the page'),
+            Column(
+                'outcome',
+                str,
+                '',
+                'of a build proposal: built or failed; empty: the trial has not ended',
+            ),
+            Column(
+                'thinking_s',
+                float,
+                's',
+                'time from the display of the state to the proposal, on the page',
+            ),
             _AT,
             _STEADY,
         ),
@@ -95,10 +114,12 @@ TABLES: Mapping[str, tuple[Column, ...]] = MappingProxyType(
             _WHO,
             _STEP,
             Column('event', int, '', 'number of the event, from 0'),
-            Column('kind', str, '', 'what happened; docs/study.md lists the kinds'),
+            Column('kind', str, '', 'kind of the event; see docs/study.md'),
             _AT,
             _STEADY,
-            Column('data', str, 'JSON', 'more of it, without records and pointer paths'),
+            Column(
+                'data', str, 'JSON', 'other data of the event, without records and pointer paths'
+            ),
         ),
     }
 )

@@ -1,4 +1,4 @@
-"""What is kept of a participant's session: events, one in a line, in the order of happening.
+"""The events of a participant's session, one per line, in order.
 
 The state of a session follows from its events alone (:mod:`.machine`), so a session that was
 interrupted, by whatever, goes on from its file.
@@ -38,7 +38,7 @@ class EventKind(str, Enum):
     PROPOSED = 'proposed'
     """The participant made a proposal (the keys of :func:`.proposal_to_json`)."""
     REFUSED = 'refused'
-    """Something was asked for that cannot be had (wish, code, region)."""
+    """A request was refused (wish, code, region)."""
     TIMED_OUT = 'timed_out'
     """The time limit of the trial was reached."""
     ENDED = 'ended'
@@ -58,7 +58,7 @@ class EventKind(str, Enum):
 
 
 class Moment(NamedTuple):
-    """A moment: on the clock of the wall [s since 1970], and on one that never steps [s]."""
+    """A moment on the wall clock [s since 1970] and on a monotonic clock [s]."""
 
     wall_s: float
     steady_s: float
@@ -66,7 +66,7 @@ class Moment(NamedTuple):
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened.
+    """An event of a session.
 
     Attributes:
         kind: what.

@@ -66,7 +66,7 @@ def _write(out: Path, tables: dict[str, list[Row]], lines: dict[str, list[str]])
         _write_csv(out / f'{name}.csv', described[name], rows)
         files[f'{name}.csv'] = len(rows)
     for path in (path for place in (RECORDS, PRACTICE) for path in (out / place).glob('*.jsonl')):
-        path.unlink()  # who was deleted since the last export may have been the only one in it
+        path.unlink()  # its participants may have been deleted since the last export
     for name, texts in sorted(lines.items()):
         (out / name).parent.mkdir(exist_ok=True)
         (out / name).write_text(''.join(f'{text}\n' for text in texts), encoding='utf-8')

@@ -66,11 +66,11 @@ class StudyFolder:
             )
 
     def close(self) -> None:
-        """Let another process work in it."""
+        """Release the folder for other processes."""
         self._lock.close()
 
     def participants(self) -> list[Participant]:
-        """Who has taken part so far, by number."""
+        """The participants so far, by number."""
         return [one.participant for one in kept_participants(self.path)]
 
     def add(self, code: str) -> Participant:
@@ -129,7 +129,7 @@ def read_study_json(path: Path) -> dict[str, object]:
 
 
 def kept_participants(path: Path) -> list[Kept]:
-    """The participants of a study's folder, by number; an empty folder is nobody's.
+    """The participants of a study's folder, by number; empty folders are skipped.
 
     Raises:
         RecordError: if the events of one can't be read.

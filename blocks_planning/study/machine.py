@@ -1,4 +1,4 @@
-"""How a participant's session stands: folded from its events, one after the other."""
+"""The state of a participant's session, computed from its events in order."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from blocks_planning.subgoals.proposals import Proposal
 
 
 class Status(str, Enum):
-    """How far a participant is."""
+    """The status of a participant."""
 
     RUNNING = 'running'
     FINISHED = 'finished'
-    """To the end of the last step."""
+    """Reached the end of the last step."""
     STOPPED = 'stopped'
     """Stopped taking part."""
     DECLINED = 'declined'
@@ -26,20 +26,20 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class State:
-    """How a session stands.
+    """The state of a session.
 
     Attributes:
         step: of the participant's steps, from 0; their number when the session is over.
-        acts: what the participant has done so far, in number.
-        status: how far the participant is.
+        acts: number of acts of the participant so far.
+        status: of the participant.
         is_closed: whether the experimenter closed the session.
         is_present: whether the participant's page is connected.
         is_begun: whether this step's trial has begun.
-        proposals: in it.
+        proposals: in this trial.
         is_timed_out: whether the time limit of this step's trial was reached.
         is_ended: whether this step's trial has ended.
-        shown_s: for how long this step was shown, before ``since_s`` [s].
-        since_s: since when it has been shown, on the steady clock [s]; None: it is not.
+        shown_s: time for which this step was shown before ``since_s`` [s].
+        since_s: time since which it is shown, on the steady clock [s]; None: it is not shown.
         last: the last event.
     """
 
@@ -57,7 +57,7 @@ class State:
     last: Event | None = None
 
     def on_step_s(self, steady_s: float) -> float:
-        """For how long this step has been shown, at a time of the steady clock [s]."""
+        """Time for which this step was shown up to a time of the steady clock [s]."""
         return self.shown_s + (0.0 if self.since_s is None else max(0.0, steady_s - self.since_s))
 
 
@@ -102,7 +102,7 @@ def _after(state: State, event: Event, steps: Sequence[Step]) -> State:
 
 
 def _away(state: State, steady_s: float) -> State:
-    """The step is not shown any more, since a time."""
+    """The state when the page disconnects."""
     return replace(state, is_present=False, shown_s=state.on_step_s(steady_s), since_s=None)
 
 
@@ -130,7 +130,7 @@ _ACTS = {
 
 
 def judge(state: State, steps: Sequence[Step], word: str) -> EventKind | Refused:
-    """What becomes of a participant's word in a state, apart from what its trial says.
+    """The event that an act causes in a state, or the reason to refuse it.
 
     Args:
         state: of the session.

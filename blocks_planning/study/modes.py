@@ -30,7 +30,7 @@ Fields: TypeAlias = Mapping[str, Any]
 
 
 class Wish(NamedTuple):
-    """What a participant asks for in a state, and why it cannot be had; None if it can."""
+    """A request of a participant in a state, and the reason to refuse it; None if there is none."""
 
     kind: ProposalKind
     region: Mask

@@ -1,6 +1,6 @@
-"""A participant's session: what comes from the page becomes events, and then happens.
+"""A participant's session: messages of the page become events, which change the state.
 
-An event is kept first. If the disk does not take it, nothing has happened, and the page says so.
+An event is written first. If the disk refuses it, the state does not change, and the page says so.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ STOPPED = 'the participant stopped taking part'
 
 
 def now() -> Moment:
-    """The moment that is now."""
+    """The current moment."""
     return Moment(time.time(), time.monotonic())
 
 
 class Participant(NamedTuple):
-    """Who takes part: a code, a number in the study from 0, and the study."""
+    """A participant: code, number in the study from 0, and id of the study."""
 
     code: str
     number: int
@@ -45,13 +45,13 @@ class Participant(NamedTuple):
 
 
 class _Running(NamedTuple):
-    """The trial of a step, as it is planned and as it runs."""
+    """The trial of a step: its plan, and its execution."""
 
     trial: Trial
     local: LocalTrial
 
     def time_out(self) -> None:
-        """End it, because its time is over."""
+        """End it at its time limit."""
         reason = f'time limit of {self.trial.condition.time_limit_s} s'
         self.local.say(CancelTrial(self.trial.spec.trial_id, reason))
 
@@ -60,9 +60,9 @@ class Session:
     """The session of a participant.
 
     Attributes:
-        participant: whose it is.
-        steps: of the participant.
-        state: how it stands.
+        participant: its participant.
+        steps: of the participant, in order.
+        state: the current state.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class Session:
         log: Log,
         clock: Callable[[], Moment] = now,
     ) -> None:
-        """Open it, where its log ends.
+        """Open the session in the state in which its log ends.
 
         Raises:
             RecordError: if the log can't be read or written.
@@ -96,31 +96,31 @@ class Session:
 
     @property
     def record(self) -> TrialRecord | None:
-        """The record so far of the trial of this step; None if it is none."""
+        """The record so far of the trial of this step; None if the step is not a trial."""
         return None if self._running is None else self._running.local.record()
 
     @property
     def shown_s(self) -> float:
-        """For how long this step has been shown [s]."""
+        """Time for which this step has been shown [s]."""
         return self.state.on_step_s(self._clock().steady_s)
 
     @property
     def left_s(self) -> float | None:
-        """Time that is left for the trial that runs [s]; None if it is not limited."""
+        """Time left for the running trial [s]; None if it is not limited."""
         trial = self.step.trial if self.step else None
         if trial is None or not trial.condition.time_limit_s or self.state.is_ended:
             return None
         return max(0.0, trial.condition.time_limit_s - self.shown_s)
 
     def act(self, fields: Fields) -> Refused | None:
-        """Do what the participant wants.
+        """Execute an act of the participant.
 
         Args:
             fields: ``act``, the word; ``number``, how many acts there were before it; ``step``, to
                 which it refers; and what a trial needs to know. A repeated act changes nothing.
 
         Returns:
-            Why it cannot be had; None if it can.
+            The reason to refuse it; None if it was done.
 
         Raises:
             MalformedProposal: if the fields are not those of an act.
@@ -145,10 +145,10 @@ class Session:
         return None
 
     def note(self, fields: Fields) -> None:
-        """Keep what the page tells of itself; notes of another step are dropped.
+        """Write down a note of the page; notes of another step are dropped.
 
         Raises:
-            MalformedProposal: if it is no note.
+            MalformedProposal: if it is not a note.
             RecordError: if it could not be kept.
         """
         board = None if self._running is None else self._running.trial.spec.task.board
@@ -184,7 +184,7 @@ class Session:
         self.release()
 
     def release(self) -> None:
-        """Let the log go; nothing more can be kept."""
+        """Close the log; no event can be written after that."""
         self._log.close()
 
     def _propose(self, running: _Running, word: str, fields: Fields) -> Refused | None:
@@ -208,7 +208,7 @@ class Session:
         return None
 
     def _run(self) -> _Running | None:
-        """The trial of this step, as far as it is."""
+        """The trial of this step, with its proposals so far."""
         trial = self.step.trial if self.step else None
         if trial is None:
             return None
@@ -222,7 +222,7 @@ class Session:
         return running
 
     def _settle(self) -> None:
-        """Keep that the trial has begun, or ended, if that is not kept yet."""
+        """Write the beginning and the end of the trial, if they are not written yet."""
         running = self._running
         if running is None:
             return

@@ -18,14 +18,14 @@ _LONG = ('record', 'points')
 
 @dataclass
 class Run:
-    """A trial as it happened.
+    """The events of a trial.
 
     Attributes:
         began: the event of its beginning.
         ended: the event of its end; None if it did not end.
         record: of it; None if it did not end.
         proposed: the events of its proposals.
-        refused: number of wishes that were refused.
+        refused: number of refused requests.
     """
 
     began: Event
@@ -70,7 +70,7 @@ def tables_of(code: str, status: str, events: Sequence[Event]) -> dict[str, list
 
     Args:
         code: of the participant.
-        status: how far the participant is.
+        status: of the participant.
         events: of the participant.
     """
     runs = runs_of(events)

@@ -1,4 +1,4 @@
-"""Regions as a page sends them: pictures; and whether there is something to fill in one."""
+"""Regions that a page sends, as pictures, and the check that they have cells to fill."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def parse_region(rows: object, board: Board) -> Mask:
 
 
 def judge_region(task: Task, built: Mask, region: Mask) -> Refused | None:
-    """The reason why there is nothing to fill in a region of the board; None if there is."""
+    """Check that a region has cells to fill; return the reason if it has none, else None."""
     if not region:
         return Refused('empty', 'nothing is drawn')
     if not region & task.silhouette:

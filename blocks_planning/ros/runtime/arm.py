@@ -22,9 +22,9 @@ NEWS_PERIOD_S = 0.5
 
 
 class Arm:
-    """Asks whoever serves ``place``; reports what becomes of each order, once.
+    """Client of the action ``place``; reports the outcome of each order once.
 
-    An order that is given again while it is being carried out changes nothing.
+    An order that is repeated during its execution changes nothing.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class Arm:
         self._told_s = 0.0
 
     def carry_out(self, order: ArmOrder, board: Board) -> None:
-        """Begin an order on a board; an order of before that still lasts is stopped."""
+        """Begin an order on a board; stop an earlier order that is still running."""
         if not self._client.server_is_ready():
             self.stop()
             self._report(_again(order, f'no node serves the action {ACTION}'))
@@ -67,7 +67,7 @@ class Arm:
         sending.add_done_callback(partial(self._on_answer, order, board))
 
     def stop(self) -> None:
-        """Stop the arm; nothing more is reported of its order."""
+        """Stop the arm; its order is not reported any more."""
         self._order = None
         if self._goal is not None:
             self._goal.cancel_goal_async()

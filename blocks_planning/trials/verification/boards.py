@@ -51,7 +51,7 @@ def wrong_status(record: TrialRecord) -> Iterator[str]:
     if record.status is TrialStatus.CANCELLED and may_be_cancelled:
         return
     if record.status is TrialStatus.COLLAPSED and not record.spec.world.simulates and not over:
-        return  # whoever observes it says so
+        return  # in an observed world, only the observer can tell
     expected = reached if over else TrialStatus.GAVE_UP
     if record.status is not expected or (gave_up and over) or not (gave_up or over):
         yield (

@@ -23,7 +23,7 @@ def frame_json(title: str, session: Session | None) -> Json:
 
     Args:
         title: of the study.
-        session: of the participant; None: nobody's session is open.
+        session: of the participant; None: no session is open.
     """
     frame: Json = {'kind': 'frame', 'title': title, 'stage': 'waiting', 'text': [], 'trial': None}
     if session is None:

@@ -1,4 +1,4 @@
-"""The participant's seat: one page holds the session, and any other is refused."""
+"""The connection of the participant: one page holds the session, any other is refused."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class _Sitting(NamedTuple):
 
 
 class Seat:
-    """Who sits at the participant's page.
+    """The single connection of the participant's page.
 
-    A page makes a key of its own and says it first. A page with the same key is the same one, come
-    again after its connection was lost.
+    A page creates a random key and sends it first. A page with the same key is the same page after
+    a lost connection.
     """
 
     def __init__(
@@ -40,11 +40,11 @@ class Seat:
         on_change: Callable[[bool], Awaitable[None]],
         on_message: Callable[[Said], Awaitable[Said | None]],
     ) -> None:
-        """Nobody sits there.
+        """Begin without a page.
 
         Args:
-            on_change: is told when somebody has sat down, or is gone.
-            on_message: is given what the page says; what it returns is sent back.
+            on_change: called with True when a page connects, with False when it disconnects.
+            on_message: called with every message of the page; its result is sent back.
         """
         self._on_change = on_change
         self._on_message = on_message
@@ -53,16 +53,16 @@ class Seat:
 
     @property
     def is_taken(self) -> bool:
-        """Whether somebody sits there."""
+        """Whether a page is connected."""
         return self._sitting is not None
 
     async def send(self, said: Said) -> None:
-        """Send to who sits there; a connection that is lost is noticed elsewhere."""
+        """Send to the connected page; :meth:`handle` notices a lost connection."""
         if self._sitting is not None:
             await _send(self._sitting.socket, said)
 
     async def handle(self, request: web.Request) -> web.StreamResponse:
-        """Let a page in, and listen to it until it is gone."""
+        """Accept a page, and handle its messages until it disconnects."""
         socket = web.WebSocketResponse(
             heartbeat=_HEARTBEAT_S, compress=False, max_msg_size=_MOST_BYTES, timeout=0.5
         )
@@ -96,7 +96,7 @@ class Seat:
         return socket
 
     async def close(self) -> None:
-        """End the connection of who sits there."""
+        """Close the connection."""
         if self._sitting is not None:
             await self._sitting.socket.close(code=1001)
 

@@ -26,12 +26,15 @@ def planned_from_ros(message: ros.TrialSpec) -> TrialSpec:
     message.planner.world, message.planner.world_settings = Simulated.name, []
     spec = spec_from_ros(message)
     if spec.strategy.asks_person:
-        raise MessageError(f'planner.strategy: {spec.strategy.name} asks a person, who has no say')
+        raise MessageError(
+            f'planner.strategy: {spec.strategy.name} asks a person, but plan_tower asks nobody; '
+            'use a strategy that decides by itself'
+        )
     return spec
 
 
 def plan_to_ros(record: TrialRecord) -> PlanTower.Result:
-    """What was planned."""
+    """The result for a planned trial."""
     ended = ended_to_ros(None, TrialEnded('', record.status, record.reason, record))
     board = record.spec.task.board
     return PlanTower.Result(
