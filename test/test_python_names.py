@@ -36,8 +36,8 @@ def test_import_brings_nothing_with_it() -> None:
 
 def test_trials_that_share_solves_have_the_records_of_single_ones() -> None:
     specs = [
-        spec(rows, strategy=strategy, seed=seed, depth=2)
-        for rows in (ARCH, CHAIR)
+        spec(rows, library=library, strategy=strategy, seed=seed, depth=2)
+        for rows, library in ((ARCH, '1x2,2x1'), (ARCH, '1x2,2x1,2x2'), (CHAIR, '1x2,2x1'))
         for strategy in ('none', 'scoping', 'full')
         for seed in (1, 2)
     ]
@@ -53,7 +53,12 @@ def test_first_decision_is_that_of_the_trial() -> None:
 
 
 def test_frames_have_every_candidate_and_the_choice() -> None:
-    records = [record(CHAIR), record(ARCH, strategy='none', seed=1)]
+    records = [
+        record(CHAIR),
+        record(CHAIR, choice='softmax'),
+        record(ARCH, strategy='none', seed=1),
+    ]
+    assert records[1].decisions[0].decision.candidates[0].probability is not None
     found = frames(records, 'small').candidates
     decisions = [
         (one.spec.trial_id, number, entry.decision)
@@ -64,6 +69,9 @@ def test_frames_have_every_candidate_and_the_choice() -> None:
     for trial_id, number, decision in decisions:
         rows = found[(found['trial_id'] == trial_id) & (found['decision'] == number)]
         assert list(rows['planning_cost']) == [c.planning_cost for c in decision.candidates]
+        assert list(rows['probability'].dropna()) == [
+            c.probability for c in decision.candidates if c.probability is not None
+        ]
         assert list(rows['status']) == [c.status.value for c in decision.candidates]
         assert rows['regions'].iloc[0] == [str(r.label) for r in decision.candidates[0].regions]
         assert rows[rows['chosen']]['candidate'].tolist() == [decision.chosen]

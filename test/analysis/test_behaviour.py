@@ -118,6 +118,16 @@ def test_builds_of_a_sweep_are_those_of_its_planners(sweep: Path) -> None:
     assert own[0].placements == record.placements
 
 
+def test_planners_that_look_ahead_differently_have_names_of_their_own(tmp_path: Path) -> None:
+    [tower] = find_stimuli('cogsci2021/12')
+    strategies = (NoSubgoals(), Scoping(0.004), Scoping(0.004, horizon=2))
+    experiment = Experiment('small', (BreadthFirst(1),), strategies, 200)
+    towers = (Tower(tower.name, Task(tower.board, tower.silhouette)),)
+    run_sweep(SweepSpec('test', towers, (1,), (experiment,)), tmp_path / 'sweep')
+    found = builds_of_sweep(tmp_path / 'sweep', ['12'])
+    assert set(found) == {'bfs none', 'bfs scoping 1', 'bfs scoping 2'}
+
+
 @pytest.fixture(scope='module')
 def found(sweep: Path) -> dict[str, Any]:
     """The numbers of the section from a few people and a small sweep."""

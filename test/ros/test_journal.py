@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from disks import disk_of
+from disks import disk_of, watch_fsync
 
 from blocks_planning.board.blocks import Block, Placed, Placement
 from blocks_planning.errors import RecordError
@@ -45,6 +45,31 @@ def begin(folder: Path, trial_id: str = 'a') -> tuple[list[Observation], str]:
 def test_what_was_written_is_there_again(tmp_path: Path) -> None:
     journal_of(tmp_path)
     assert begin(tmp_path) == (SEEN, '')
+
+
+def test_every_observation_is_on_disk_when_the_disk_is_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sizes = watch_fsync(monkeypatch)
+    path = journal_of(tmp_path)
+    assert path.stat().st_size in sizes
+
+
+def test_journal_that_goes_on_is_on_disk_before_it_replaces_the_old_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    size = journal_of(tmp_path).stat().st_size
+    sizes = watch_fsync(monkeypatch)
+    flushed_before: list[list[int]] = []
+    replace = Path.replace
+
+    def watched(path: Path, target: Path) -> Path:
+        flushed_before.append(list(sizes))
+        return replace(path, target)
+
+    monkeypatch.setattr(Path, 'replace', watched)
+    begin(tmp_path)
+    assert flushed_before == [[size]]
 
 
 def test_version_1_is_read_and_goes_on_as_version_2(tmp_path: Path) -> None:

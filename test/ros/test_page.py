@@ -124,7 +124,7 @@ def test_page_shows_a_script_and_ends_with_it(tmp_path: Path) -> None:
 
 
 def test_page_that_dies_is_served_again_at_the_same_address(tmp_path: Path) -> None:
-    script = write_script(tmp_path, seeds=3)
+    script = write_script(tmp_path, seeds=60)
     out = tmp_path / 'out'
     with bring_up(script, '--out', out, '--view', '--pace', '0.15') as process:
         url = address_of(process)
@@ -133,9 +133,12 @@ def test_page_that_dies_is_served_again_at_the_same_address(tmp_path: Path) -> N
         os.kill(before, signal.SIGKILL)
         wait_until(process, lambda: is_served(url))
         assert node_processes(process.pid)['trial_view'] != before
-        _, err = process.communicate(timeout=90)
-    assert process.returncode == 0, err
-    assert record_lines(out) == local_lines(script)
+        recorded = len(record_lines(out))
+        wait_until(process, lambda: len(record_lines(out)) > recorded + 1)
+        process.send_signal(signal.SIGINT)  # how long a page takes to come back is not known
+        process.communicate(timeout=90)
+    lines = record_lines(out)
+    assert lines == local_lines(script)[: len(lines)]
 
 
 @pytest.mark.parametrize(

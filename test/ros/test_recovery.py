@@ -53,12 +53,11 @@ def test_name_is_claimed_once_in_a_domain() -> None:
 def test_second_process_of_a_node_is_refused(graph: Graph) -> None:
     command = [sys.executable, '-m', NODES, 'subgoal_selector', '--ros-args']
     command += ['-r', f'__ns:={graph.namespace}']
-    peer = graph.add(Peer, TRIAL_SPEC, (), ())
-    with subprocess.Popen(command) as first:
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as first:
         try:
-            graph.spin_until(
-                lambda: any(n.startswith('subgoal_sel') for n in peer.get_node_names())
-            )
+            assert first.stderr is not None
+            # A node can be seen before it has claimed its name.
+            assert any(line.endswith(': ready\n') for line in iter(first.stderr.readline, ''))
             second = subprocess.run(command, capture_output=True, text=True, timeout=60)
             assert second.returncode == 2
             assert f'node {graph.namespace}/subgoal_selector is already running' in second.stderr

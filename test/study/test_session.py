@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from blocks_planning.errors import RecordError
+from blocks_planning.study import session
 from blocks_planning.study.desk import Desk
 from blocks_planning.study.events import EventKind
 from blocks_planning.study.log import read_events
@@ -106,6 +107,18 @@ def test_regions_are_built_withdrawn_and_found_impossible(person: Person, folder
     ]
     assert record.status is TrialStatus.SUCCESS
     assert list(contradictions(record)) + list(differs_from_rerun(record)) == []
+
+
+def test_proposals_in_one_state_are_limited(
+    person: Person, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session, 'MOST_PROPOSALS', 2)
+    person.go_to(StepKind.TRIAL)
+    assert [person.draw('withdrawn', ARCH) for _ in range(2)] == [None, None]
+    refused = person.draw('withdrawn', ARCH)
+    assert refused is not None
+    assert refused.code == 'many'
+    assert len(kept(folder, EventKind.PROPOSED)) == 2
 
 
 def test_a_repeated_act_changes_nothing(person: Person, folder: Path) -> None:

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 from builders import CHAIR, spec
-from disks import disk_of
+from disks import disk_of, watch_fsync
 
 from blocks_planning.errors import RecordError
+from blocks_planning.search.result import CancelToken
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.recordfile import RecordFile
@@ -35,6 +36,32 @@ def test_records_are_appended_and_found_again(tmp_path: Path) -> None:
     again.append(third)
     again.close()
     assert path.read_text().splitlines() == [r.to_line() for r in (first, second, third)]
+
+
+def test_cancelled_trial_is_not_finished(tmp_path: Path) -> None:
+    """It is run again: neither the file that wrote it nor one that reads it counts it."""
+    cancel = CancelToken()
+    cancel.cancel()
+    cancelled = run_trial(spec(CHAIR), cancel)
+    file = RecordFile(tmp_path / 'trials.jsonl')
+    file.append(cancelled)
+    assert file.finished == set()
+    file.close()
+    again = RecordFile(tmp_path / 'trials.jsonl')
+    assert again.finished == set()
+    again.close()
+
+
+def test_record_is_on_disk_before_it_is_appended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, second, _ = records()
+    file = RecordFile(tmp_path / 'trials.jsonl')
+    file.append(first)
+    sizes = watch_fsync(monkeypatch)
+    file.append(second)
+    assert sizes[-1] == len(first.to_line()) + len(second.to_line()) + 2
+    file.close()
 
 
 @pytest.mark.parametrize('cut', [1, 10, 300, -1])

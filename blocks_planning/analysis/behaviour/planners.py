@@ -50,7 +50,7 @@ def builds_of_sweep(
     trials = trials[trials['stimulus'].isin([f'{SET}/{tower}' for tower in towers])]
     named_by = [*NAMED_BY, *(name for name in AND_BY if _differs(trials, name))]
     groups = {
-        ' '.join(f'{value}' for value in key if not pd.isna(value)): _at_middle_lambda(part)
+        ' '.join(_word(value) for value in key if not pd.isna(value)): _at_middle_lambda(part)
         for key, part in trials.groupby(named_by, observed=True, dropna=False, sort=False)
     }
     wanted = pd.concat([part['trial_id'] for part in groups.values()]) if groups else []
@@ -63,6 +63,10 @@ def builds_of_sweep(
         ]
         for name, part in groups.items()
     }
+
+
+def _word(value: object) -> str:
+    return f'{value:g}' if isinstance(value, float) else str(value)
 
 
 def _differs(trials: pd.DataFrame, name: str) -> bool:
