@@ -20,9 +20,11 @@ from rclpy.parameter import Parameter
 from source_imports import ROOT
 
 from blocks_planning.board.blocks import Block, Placed
+from blocks_planning.board.geometry import Board
 from blocks_planning.ros.nodes import subgoal_selector, world
 from blocks_planning.ros.nodes.action_searcher import ActionSearcher
 from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
+from blocks_planning.ros.runtime.arm import Arm
 from blocks_planning.ros.wire.conversions.place import order_to_ros
 from blocks_planning.ros.wire.graph import TRIAL_ORCHESTRATOR
 from blocks_planning.ros.wire.topics import ACTION_OUTCOME
@@ -195,6 +197,27 @@ def test_arm_is_stopped_when_its_trial_ends(graph: Graph, tmp_path: Path) -> Non
     assert len(arm.goals) == 1
     trial.node.cancel_trial()
     graph.spin_until(lambda: arm.cancelled)
+
+
+def test_order_that_is_repeated_is_one_goal(
+    graph: Graph, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    orders: list[ArmOrder] = []
+    carry_out = Arm.carry_out
+
+    def counted(arm: Arm, order: ArmOrder, board: Board) -> None:
+        orders.append(order)
+        carry_out(arm, order, board)
+
+    monkeypatch.setattr(Arm, 'carry_out', counted)
+    arm = graph.add(lambda **options: WrongArm(None, **options))
+    trial = Trial(graph, tmp_path, retries=1000)
+    trial.node.start_trial(SPEC.trial_id, SPEC)
+    graph.spin_until(lambda: len(orders) >= 4)
+    assert len(set(orders)) == 1
+    graph.spin_until(lambda: arm.goals)
+    assert len(arm.goals) == 1
+    assert not arm.cancelled
 
 
 def test_world_that_was_killed_asks_for_the_same_order_again(graph: Graph, tmp_path: Path) -> None:
