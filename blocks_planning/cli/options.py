@@ -73,7 +73,7 @@ def _setting_option(flat: FlatSetting) -> Decorator:
         f'--{flat.name.replace("_", "-")}',
         flat.name,
         type=click.Choice(flat.choices) if flat.choices else _TYPES[flat.kind],
-        help=f'{flat.first.text}  [default: {flat.defaults}]',
+        help=f'{flat.text}  [default: {flat.defaults}]',
     )
 
 

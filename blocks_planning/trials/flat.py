@@ -44,9 +44,12 @@ class FlatSetting:
     members: dict[str, Setting] = field(default_factory=dict)
 
     @property
-    def first(self) -> Setting:
-        """The description of the first member that has the setting."""
-        return next(iter(self.members.values()))
+    def text(self) -> str:
+        """What the setting is; if members describe it differently, each in its own words."""
+        users = self._users('text')
+        if len(users) == 1:
+            return next(iter(users))
+        return ' '.join(f'For {names}: {_uncapitalised(text)}' for text, names in users.items())
 
     @property
     def kind(self) -> type:
@@ -70,10 +73,18 @@ class FlatSetting:
     @property
     def defaults(self) -> str:
         """The defaults with their members, such as '0.002 for scoping, 1.0 for full'."""
+        return ', '.join(f'{value} for {names}' for value, names in self._users('default').items())
+
+    def _users(self, attribute: str) -> dict[str, str]:
+        """The members, such as 'astar/best_first', by what an attribute of theirs says."""
         users: dict[str, list[str]] = {}
         for name, one in self.members.items():
-            users.setdefault(str(one.default), []).append(name)
-        return ', '.join(f'{value} for {"/".join(names)}' for value, names in users.items())
+            users.setdefault(str(getattr(one, attribute)), []).append(name)
+        return {said: '/'.join(names) for said, names in users.items()}
+
+
+def _uncapitalised(text: str) -> str:
+    return text[:1].lower() + text[1:]
 
 
 def flat_settings(wanted: Callable[[type[Any]], bool] | None = None) -> list[FlatSetting]:

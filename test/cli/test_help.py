@@ -12,6 +12,7 @@ from command import Run
 
 from blocks_planning import __version__
 from blocks_planning.cli import commands
+from blocks_planning.trials.flat import flat_settings
 
 
 def _all_commands() -> Iterator[tuple[str, click.Command]]:
@@ -51,6 +52,17 @@ def test_example_is_understood(example: str) -> None:
         if words[: len(name.split())] == name.split()
     )
     COMMANDS[name].make_context(name, words[len(name.split()) :])
+
+
+def test_help_describes_a_setting_in_the_words_of_each_member(run: Run) -> None:
+    said = ' '.join(run('solve', '--help').out.split()).lower()
+    texts = {
+        one.text.lower()
+        for flat in flat_settings(lambda cls: cls.name not in ('human', 'observed'))
+        for one in flat.members.values()
+    }
+    assert len(texts) > 20
+    assert [text for text in texts if text not in said] == []
 
 
 def test_version(run: Run) -> None:
