@@ -22,6 +22,7 @@ from blocks_planning.extras import extra
 
 with extra('figures'):
     from matplotlib.figure import Figure
+    from matplotlib.patheffects import withStroke
 
 Results = dict[str, Any]
 
@@ -95,6 +96,8 @@ def _paper_dot(ax: Any, search: str, strategy: str, cost: str) -> None:
         ha='center',
         va='bottom' if search == 'astar' else 'top',
         fontsize=7,
+        zorder=6,  # above the marks of other planners
+        path_effects=[withStroke(linewidth=2, foreground='white')],
     )
 
 
