@@ -1,15 +1,17 @@
 """Planners under uncertainty: success, regret and costs by world, and a comparison.
 
 Every number is a mean over towers of the means over seeds. Intervals (95 %) are percentiles of a
-bootstrap over towers: towers are drawn with replacement, each with all of its seeds, so they
-describe the variation between sets of towers. Costs are over all trials, successful or not, and
+bootstrap over towers and seeds: both are drawn with replacement, independently. A seed stands for
+the same slips and losses in every tower (:mod:`blocks_planning.worlds.world`), so towers alone would
+describe only part of the variation. Costs are over all trials, successful or not, and
 count every evaluated state, including those of plans that were not executed to the end.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -74,66 +76,130 @@ def summarise(trials: pd.DataFrame, optima: list[dict[str, Any]]) -> dict[str, A
     """
     best = pd.DataFrame(optima).astype({'optimum': float})
     best = best.pivot_table(index='stimulus', columns='slip', values='optimum', dropna=False)
-    means = trials.groupby([*_WORLD, 'planner', 'stimulus'], observed=True)[list(MEASURES)].mean()
+    seeds = [int(seed) for seed in sorted(trials['seed'].unique())]
+    resampling = Resampling.of(len(best), len(seeds))
     return {
         'trials': len(trials),
-        'seeds': [int(seed) for seed in sorted(trials['seed'].unique())],
-        'cells': list(_cells(means, best)),
+        'seeds': seeds,
+        'cells': list(_cells(trials, best, resampling)),
         'optima': [
-            {'slip': float(slip), **over_towers(best[slip].to_numpy()).to_json()} for slip in best
+            {
+                'slip': float(slip),
+                **resampling.over_towers(_same_in_every_seed(best[slip].to_numpy())).to_json(),
+            }
+            for slip in best
         ],
-        'advantage': advantages(means),
+        'advantage': advantages(trials, resampling),
         'loose': loose_towers(trials),
     }
 
 
-def over_towers(values: np.ndarray, iterations: int = ITERATIONS) -> Estimate:
-    """The mean of a value per tower, float64 (n,), bootstrapped over towers."""
-    rng = np.random.default_rng(SEED)
-    drawn = rng.integers(0, len(values), (iterations, len(values)))
-    return estimate_of(values[drawn].mean(axis=1), float(values.mean()))
+@dataclass(frozen=True)
+class Resampling:
+    """A bootstrap over towers and seeds, the same one for every number.
+
+    Attributes:
+        towers: share of each tower in each iteration, float64 (iterations, towers).
+        seeds: share of each seed in each iteration, float64 (iterations, seeds).
+    """
+
+    towers: np.ndarray
+    seeds: np.ndarray
+
+    @classmethod
+    def of(cls, towers: int, seeds: int, iterations: int = ITERATIONS) -> Resampling:
+        """Draw that many towers and seeds with replacement."""
+        rng = np.random.default_rng(SEED)
+        return cls(
+            *(rng.multinomial(n, np.full(n, 1 / n), iterations) / n for n in (towers, seeds))
+        )
+
+    def by_tower(self, table: np.ndarray) -> ByTower:
+        """The means over seeds of a value per tower and seed, float64 (towers, seeds)."""
+        return ByTower(table.mean(axis=1), self.seeds @ table.T)
+
+    def over_towers(self, values: ByTower) -> Estimate:
+        """The mean over towers, with its interval."""
+        drawn = (values.drawn * self.towers).sum(axis=1)
+        return estimate_of(drawn, float(values.mean.mean()))
 
 
-def _cells(means: pd.DataFrame, best: pd.DataFrame) -> Any:
-    for place, part in means.groupby([*_WORLD, 'planner'], observed=True):
+class ByTower(NamedTuple):
+    """A value per tower, float64 (towers,), and the same in each iteration of the bootstrap,
+    float64 (iterations, towers).
+    """
+
+    mean: np.ndarray
+    drawn: np.ndarray
+
+    def minus(self, other: ByTower) -> ByTower:
+        """The differences, paired by tower and iteration."""
+        return ByTower(self.mean - other.mean, self.drawn - other.drawn)
+
+    def log2(self) -> ByTower:
+        """The binary logarithms; values below 1 count as 1."""
+        return ByTower(*(np.log2(np.maximum(one, 1)) for one in self))
+
+
+def _same_in_every_seed(values: np.ndarray) -> ByTower:
+    return ByTower(values, values[None, :])
+
+
+def _table(trials: pd.DataFrame, measure: str) -> np.ndarray:
+    """A measure by tower and seed, both in order, float64 (towers, seeds)."""
+    table = trials.pivot_table(index='stimulus', columns='seed', values=measure, dropna=False)
+    values: np.ndarray = table.to_numpy(float)
+    return values
+
+
+def _cells(trials: pd.DataFrame, best: pd.DataFrame, resampling: Resampling) -> Any:
+    for place, part in trials.groupby([*_WORLD, 'planner'], observed=True):
         slip, loss, blocks, planner = place
-        towers = part.index.get_level_values('stimulus')
-        found = {name: over_towers(part[name].to_numpy(float)).to_json() for name in MEASURES}
+        values = {name: resampling.by_tower(_table(part, name)) for name in MEASURES}
         if blocks == 'glued':
-            regret = best.loc[towers, slip].to_numpy() - part['success'].to_numpy(float)
-            found['regret'] = over_towers(regret).to_json()
+            optimum = _same_in_every_seed(best[slip].to_numpy(float))
+            values['regret'] = optimum.minus(values['success'])
+        found = {name: resampling.over_towers(one).to_json() for name, one in values.items()}
         yield {'slip': slip, 'loss': loss, 'blocks_are': blocks, 'planner': planner, **found}
 
 
-def advantages(means: pd.DataFrame) -> list[dict[str, Any]]:
+def advantages(trials: pd.DataFrame, resampling: Resampling) -> list[dict[str, Any]]:
     """The advantage of looking one subgoal ahead over planning all subgoals, by planner and slip.
 
     For each scoping planner: the difference in success, the ratio of states evaluated (full
-    planning divided by scoping), and how much both have changed since slip 0, paired by tower.
+    planning divided by scoping), and how much both have changed since slip 0, paired by tower and
+    seed.
     """
-    glued = means.xs((0.0, 'glued'), level=('loss', 'blocks_are'))
-    slips = sorted(glued.index.get_level_values('slip').unique())
-    near = sorted(p for p in glued.index.get_level_values('planner').unique() if NEAR in p)
+    glued = trials[(trials['loss'] == 0) & (trials['blocks_are'] == 'glued')]
+    slips = sorted(glued['slip'].unique())
+    near = sorted(planner for planner in glued['planner'].unique() if NEAR in planner)
     rows = []
     for planner in near:
-        start = _gains(glued, planner, slips[0])
+        start = _gains(glued, planner, slips[0], resampling)
         for slip in slips:
-            gains = _gains(glued, planner, slip)
+            gains = _gains(glued, planner, slip, resampling)
             row: dict[str, Any] = {'planner': planner, 'slip': slip}
-            for name in gains:
-                row[name] = over_towers(gains[name]).to_json()
-                row[f'{name}_change'] = over_towers(gains[name] - start[name]).to_json()
+            for name, gain in gains.items():
+                row[name] = resampling.over_towers(gain).to_json()
+                row[f'{name}_change'] = resampling.over_towers(gain.minus(start[name])).to_json()
             rows.append(row)
     return rows
 
 
-def _gains(glued: pd.DataFrame, planner: str, slip: float) -> dict[str, np.ndarray]:
-    near, far = (glued.xs((slip, name), level=('slip', 'planner')) for name in (planner, FAR))
-    far = far.loc[near.index]
-    log_costs = [np.log2(np.maximum(one['states'].to_numpy(float), 1)) for one in (far, near)]
+def _gains(
+    glued: pd.DataFrame, planner: str, slip: float, resampling: Resampling
+) -> dict[str, ByTower]:
+    at = glued[glued['slip'] == slip]
+    near, far = (
+        {
+            name: resampling.by_tower(_table(at[at['planner'] == one], name))
+            for name in ('success', 'states')
+        }
+        for one in (planner, FAR)
+    )
     return {
-        'success': near['success'].to_numpy(float) - far['success'].to_numpy(float),
-        'log2_cost_ratio': log_costs[0] - log_costs[1],
+        'success': near['success'].minus(far['success']),
+        'log2_cost_ratio': far['states'].log2().minus(near['states'].log2()),
     }
 
 

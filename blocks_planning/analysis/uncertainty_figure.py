@@ -22,7 +22,7 @@ _MARKS = 'osv'
 
 
 def uncertainty_figure(results: dict[str, Any]) -> Figure:
-    """A panel for each of :data:`PANELS`: lines over the slip with 95 % intervals over towers."""
+    """A panel for each of :data:`PANELS`: lines over the slip with 95 % intervals."""
     figure = new_figure(10, 6.6)
     with styled():
         axes = figure.subplots(2, 2, sharex=True).flat
@@ -72,7 +72,7 @@ def loose_figure(results: dict[str, Any]) -> Figure:
     """Shares of falling towers of each planner, by tower, and of imperfect attempts of people."""
     figure = new_figure(9, 3.4)
     rows = results['loose']
-    towers = list(dict.fromkeys(row['stimulus'] for row in rows))
+    towers = sorted({row['stimulus'] for row in rows}, key=lambda name: (len(name), name))
     planners = list(dict.fromkeys(row['planner'] for row in rows))
     with styled():
         panel = figure.subplots()

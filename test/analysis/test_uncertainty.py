@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from blocks_planning.analysis.uncertainty import over_towers, read_uncertain
+from blocks_planning.analysis.uncertainty import Resampling, read_uncertain
 from blocks_planning.analysis.uncertainty_answers import first_change
 
 
@@ -106,10 +106,39 @@ def test_change_begins_where_it_stays(
     assert first_change(rows, 'gain') == expected
 
 
-def test_interval_is_over_towers() -> None:
-    values = np.array([0.0, 1.0] * 8)
-    found = over_towers(values)
+def interval(table: np.ndarray) -> Any:
+    resampling = Resampling.of(*table.shape)
+    return resampling.over_towers(resampling.by_tower(table))
+
+
+HALF = np.outer([0.0, 1.0] * 8, np.ones(2))
+
+
+@pytest.mark.parametrize('table', [HALF, HALF.T])
+def test_towers_and_seeds_are_drawn(table: np.ndarray) -> None:
+    """Half of 16 towers are 1 in both seeds; then half of 16 seeds in both towers."""
+    found = interval(table)
     assert found.mean == 0.5
     # The mean of 16 draws from 0 and 1 has a standard deviation of 1/8.
     assert found.low == pytest.approx(0.25, abs=0.07)
     assert found.high == pytest.approx(0.75, abs=0.07)
+
+
+def test_what_is_the_same_everywhere_has_no_interval() -> None:
+    found = interval(np.full((3, 4), 7.0))
+    assert [found.mean, found.low, found.high] == pytest.approx([7, 7, 7])
+
+
+def test_differences_are_paired_by_tower_and_seed() -> None:
+    rng = np.random.default_rng(1)
+    table = rng.random((5, 6))
+    resampling = Resampling.of(5, 6)
+    gain = resampling.by_tower(table + 0.25).minus(resampling.by_tower(table))
+    found = resampling.over_towers(gain)
+    assert [found.mean, found.low, found.high] == pytest.approx([0.25] * 3)
+
+
+def test_logarithm_is_of_the_mean_cost_of_a_tower() -> None:
+    found = Resampling.of(1, 2).by_tower(np.array([[0.0, 16.0]])).log2()
+    assert found.mean == 3.0
+    assert set(np.unique(found.drawn)) == {0.0, 3.0, 4.0}
