@@ -24,6 +24,7 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.ros.nodes import subgoal_selector, world
 from blocks_planning.ros.nodes.action_searcher import ActionSearcher
 from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
+from blocks_planning.ros.runtime import arm as arm_module
 from blocks_planning.ros.runtime.arm import Arm
 from blocks_planning.ros.wire.conversions.place import order_to_ros
 from blocks_planning.ros.wire.graph import TRIAL_ORCHESTRATOR
@@ -218,6 +219,31 @@ def test_order_that_is_repeated_is_one_goal(
     graph.spin_until(lambda: arm.goals)
     assert len(arm.goals) == 1
     assert not arm.cancelled
+
+
+def test_silent_arm_is_asked_again(
+    graph: Graph, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It may have been restarted, and know nothing of the order."""
+    monkeypatch.setattr(arm_module, 'ASK_AGAIN_S', 0.2)
+    arm = graph.add(lambda **options: WrongArm(None, **options))
+    trial = Trial(graph, tmp_path, retries=1000)
+    trial.node.start_trial(SPEC.trial_id, SPEC)
+    graph.spin_until(lambda: len(arm.goals) >= 2)
+    first, second = (goal.request for goal in arm.goals[:2])
+    assert (first.sequence, first.placement) == (second.sequence, second.placement)
+    assert not arm.cancelled
+
+
+def test_arm_that_was_restarted_is_asked_again(graph: Graph, tmp_path: Path) -> None:
+    silent = graph.add(lambda **options: WrongArm(None, **options))
+    trial = Trial(graph, tmp_path, retries=1000)
+    trial.node.start_trial(SPEC.trial_id, SPEC)
+    graph.spin_until(lambda: silent.goals)
+    graph.remove(silent)
+    add_clumsy_arm(graph)
+    graph.spin_until(lambda: not trial.node.is_busy)
+    assert trial.node.memory.record().status is TrialStatus.SUCCESS
 
 
 def test_world_that_was_killed_asks_for_the_same_order_again(graph: Graph, tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from action_msgs.msg import GoalStatus
 from blocks_planning_msgs.action import Place
 from rclpy.action.client import ActionClient, ClientGoalHandle
 from rclpy.task import Future
@@ -19,12 +20,15 @@ from blocks_planning.trials.messages import ArmOrder, ArmReport, PlacementCode
 ACTION = 'place'
 NEWS_PERIOD_S = 0.5
 """Least time between two reports of progress in the same phase [s]."""
+ASK_AGAIN_S = 5.0
+"""Silence after which a repeated order becomes a goal again: the server may have been restarted
+[s]."""
 
 
 class Arm:
     """Client of the action ``place``; reports the outcome of each order once.
 
-    An order that is repeated during its execution changes nothing.
+    An order that is repeated during its execution changes nothing, unless the server is silent.
     """
 
     def __init__(
@@ -48,9 +52,9 @@ class Arm:
         self._cell_m = cell_m
         self._client = ActionClient(node, Place, ACTION)
         self._order: ArmOrder | None = None
-        self._goal: ClientGoalHandle | None = None
+        self._goals: list[ClientGoalHandle] = []
         self._phase = ''
-        self._told_s = 0.0
+        self._told_s = self._heard_s = 0.0
 
     def carry_out(self, order: ArmOrder, board: Board) -> None:
         """Begin an order on a board; stop an earlier order that is still running."""
@@ -58,10 +62,13 @@ class Arm:
             self.stop()
             self._report(_again(order, f'no node serves the action {ACTION}'))
             return
-        if order == self._order:
+        now_s = self._node.now_s
+        if order != self._order:
+            self.stop()
+            self._order, self._phase, self._told_s = order, '', 0.0
+        elif now_s - self._heard_s < ASK_AGAIN_S:
             return
-        self.stop()
-        self._order, self._phase, self._told_s = order, '', 0.0
+        self._heard_s = now_s
         goal = self._stamp(order_to_ros(order, self._cell_m))
         sending = self._client.send_goal_async(goal, partial(self._on_feedback, order))
         sending.add_done_callback(partial(self._on_answer, order, board))
@@ -69,12 +76,13 @@ class Arm:
     def stop(self) -> None:
         """Stop the arm; its order is not reported any more."""
         self._order = None
-        if self._goal is not None:
-            self._goal.cancel_goal_async()
-            self._goal = None
+        for goal in self._goals:
+            goal.cancel_goal_async()
+        self._goals.clear()
 
     def _on_feedback(self, order: ArmOrder, message: Any) -> None:
         phase, progress = message.feedback.phase, message.feedback.progress
+        self._heard_s = self._node.now_s
         is_news = phase != self._phase or self._node.now_s - self._told_s >= NEWS_PERIOD_S
         if order == self._order and is_news and 0 <= progress <= 1:
             self._phase, self._told_s = phase, self._node.now_s
@@ -87,13 +95,16 @@ class Arm:
             if goal.accepted:
                 goal.cancel_goal_async()
         elif goal.accepted:
-            self._goal = goal
+            self._goals.append(goal)
             goal.get_result_async().add_done_callback(partial(self._on_result, order, board))
         else:
             self._end(_again(order, 'the arm did not accept the order'))
 
     def _on_result(self, order: ArmOrder, board: Board, got: Future) -> None:
         if order != self._order:
+            return
+        if got.result().status == GoalStatus.STATUS_UNKNOWN:  # its server was restarted
+            self._end(_again(order, 'the arm no longer knows the order'))
             return
         try:
             report = report_from_ros(board, order, got.result().result)
@@ -103,7 +114,8 @@ class Arm:
         self._end(report)
 
     def _end(self, report: ArmReport) -> None:
-        self._order = self._goal = None
+        self._order = None
+        self._goals.clear()
         self._report(report)
 
 
