@@ -2,7 +2,7 @@
 # Paths in recipes are relative, so the checkout may lie in a folder with spaces in its name.
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo-setup demo reproduce test parity faults fuzz cancels lint types bench
+.PHONY: help setup demo-setup robot-setup demo reproduce test parity robot faults fuzz cancels lint types bench
 .PHONY: soak dist clean
 .SUFFIXES:
 
@@ -49,6 +49,16 @@ demo: demo-setup  ## Rebuild three towers through the ROS graph, with a bag and 
 	$(BIN)/blocks-planning verify demo/bag
 	$(BIN)/blocks-planning draw demo/bag --record 2 --out demo/tower.png
 	@echo 'The second tower is in demo/tower.png.'
+
+robot-setup:
+	@sh requirements/setup.sh robot
+
+robot: robot-setup  ## Let a simulated robot build a tower through the graph, and film it
+	rm -rf robot
+	$(BIN)/blocks-planning run config/trials/robot.yaml --out robot --robot
+	$(BIN)/blocks-planning verify robot/trials.jsonl
+	$(BIN)/python -m benchmarks.robot --tower 13 --film robot/robot.gif
+	@echo 'The film is in robot/robot.gif.'
 
 reproduce: setup  ## Run every experiment of the paper (OUT=folder, ARGS=--quick)
 	$(BIN)/blocks-planning reproduce --out $(OUT) $(ARGS)

@@ -11,6 +11,7 @@ NODES = (
     *('world', 'subgoal_selector', 'action_searcher', 'trial_orchestrator', 'bag_recorder'),
     'marker_publisher',
     'trial_view',
+    'robot_arm',
 )
 
 # What planning and the nodes do without. blocks_planning/extras.py names the extra where a module

@@ -15,6 +15,9 @@ EXTRAS = ('experiments', 'figures', 'page', 'robot')
 """As in ``extras_require`` of ``setup.py``; the extra ``all`` contains these except
 ``robot``, which is large and only needed for the simulated robot."""
 
+_TARGETS = {'robot': 'make robot-setup'}
+"""Targets of make that install an extra that ``make setup`` leaves out."""
+
 
 class MissingExtra(ConfigurationError):
     """A package that an optional part of this one needs is not installed."""
@@ -37,5 +40,6 @@ def extra(name: str) -> Iterator[None]:
         module = str(error.name).partition('.')[0]
         raise MissingExtra(
             f'the module {module} is not installed; it comes with the extra {name!r} of this '
-            f"package: pip install 'blocks_planning[{name}]' (in a checkout: make setup)"
+            f"package: pip install 'blocks_planning[{name}]' "
+            f'(in a checkout: {_TARGETS.get(name, "make setup")})'
         ) from error

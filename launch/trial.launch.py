@@ -31,9 +31,11 @@ ARGUMENTS = {
     'placing_timeout_s': ('30.0', 'how long the world may be silent before its trial ends [s]'),
     'retries': ('10', 'how often an order is given again that the world cannot carry out'),
     'markers': ('false', 'true: publish the towers for RViz and Foxglove'),
+    'robot': ('false', 'true: a simulated robot carries out the orders (world observed)'),
     'view': ('false', 'true: serve the page; trial_view logs its address'),
 }
 NODES = ['world', 'subgoal_selector', 'action_searcher']
+ROBOT_CELL_M = 0.04
 FLAGS = {'true': True, 'false': False}
 
 
@@ -77,6 +79,9 @@ def parameters_of(values):
         found['bag_recorder'] = {'bag_dir': values['bag_dir']}
     if flag(values, 'markers'):
         found['marker_publisher'] = {}
+    if flag(values, 'robot'):
+        found['robot_arm'] = {'state_dir': str(Path(values['out_dir'], 'robot'))}
+        found['world']['cell_size'] = ROBOT_CELL_M
     if flag(values, 'view'):
         found['trial_view'] = session
     found['trial_orchestrator'] = {

@@ -1,9 +1,10 @@
 #!/bin/sh
 # Makes .venv in the current folder, or brings it up to date. `make setup` calls it, with a
 # clean environment and all caches inside the folder; `make demo` calls it with the word demo, and
-# then leaves out what only experiments, the page and development need.
+# then leaves out what only experiments, the page and development need; `make robot` calls it with
+# the word robot, and adds what simulates the robot.
 #
-# Four stages (packages, development, messages, project), each with a stamp that holds what the
+# Five stages (packages, development, robot, messages, project), each with a stamp that holds what the
 # stage was made from. A stamp is written last and removed first, so whatever was interrupted is
 # made again by the next call.
 # Contents are compared, not dates: a checkout of another branch and back costs nothing.
@@ -24,6 +25,7 @@ fail() {
 # checkout needs its own.
 packages_wanted=$(pwd -P; cksum requirements/lock.txt)
 development_wanted=$(cksum requirements/lock-development.txt)
+robot_wanted=$(cksum requirements/lock-robot.txt)
 messages_wanted=$(cd msg_defs && cksum package.xml CMakeLists.txt pyproject.toml ros_wheels.cmake \
     msg/*.msg action/*.action)
 shared=$(ls -d package.xml stimuli config launch 2>/dev/null || true)
@@ -36,6 +38,10 @@ stamped() {
 
 development_ready() {
     [ "$wanted" = demo ] || stamped development "$development_wanted"
+}
+
+robot_ready() {
+    [ "$wanted" != robot ] || stamped robot "$robot_wanted"
 }
 
 # What an older lock has put there is not taken out again: then everything is made anew.
@@ -54,12 +60,12 @@ messages_ready() {
 }
 
 ready() {
-    messages_ready && stamped project "$project_wanted" && development_ready
+    messages_ready && stamped project "$project_wanted" && development_ready && robot_ready
 }
 
 case $wanted in
-    all|demo) ;;
-    *) fail "$wanted is not a set of packages: name demo, or all (the default)" ;;
+    all|demo|robot) ;;
+    *) fail "$wanted is not a set of packages: name demo, robot, or all (the default)" ;;
 esac
 if ready; then exit 0; fi
 
@@ -234,6 +240,12 @@ if ! development_ready; then
     [ -n "${python:-}" ] || get_uv
     install_set requirements/lock-development.txt '0.6 GB'
     printf '%s\n' "$development_wanted" >"$venv/.stamp-development"
+fi
+
+if ! robot_ready; then
+    [ -x "$venv/bin/uv" ] || get_uv
+    install_set requirements/lock-robot.txt '0.1 GB'
+    printf '%s\n' "$robot_wanted" >"$venv/.stamp-robot"
 fi
 
 if ! messages_ready; then

@@ -229,7 +229,9 @@ def test_uv_is_told_what_pip_was_told_and_nothing_else(
 def test_a_set_that_is_none_is_refused(checkout: Path) -> None:
     done = set_up(checkout, {}, {}, 'test')
     assert done.returncode == 1
-    assert done.stderr == 'error: test is not a set of packages: name demo, or all (the default)\n'
+    assert done.stderr == (
+        'error: test is not a set of packages: name demo, robot, or all (the default)\n'
+    )
     assert not (checkout / '.venv').exists()
 
 

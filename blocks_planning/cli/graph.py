@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
-import socket
 import sys
-import threading
 import time
-import webbrowser
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
@@ -16,7 +13,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from blocks_planning.cli.browser import open_when_served
 from blocks_planning.cli.options import refuse_nan
+from blocks_planning.cli.robot import robot_for
 from blocks_planning.errors import BlocksPlanningError
 from blocks_planning.extras import MissingExtra
 from blocks_planning.trials.reading import RecordTail, read_records
@@ -41,8 +40,6 @@ _PATH = click.Path(path_type=Path)
 _FRAMES_PER_S = 8
 _MOST_PICTURES = 16
 """Pictures are drawn by default if a script has at most this many trials."""
-_SERVED_WITHIN_S = 60.0
-_LOOK_PERIOD_S = 0.2
 
 
 @click.command(epilog=_EXAMPLES)
@@ -81,6 +78,16 @@ _LOOK_PERIOD_S = 0.2
     show_default=True,
     help='How often an order is given again that the world cannot carry out.',
 )
+@click.option(
+    '--robot', is_flag=True, help='Have a simulated robot carry out the orders (world observed).'
+)
+@click.option(
+    '--robot-setting',
+    'robot_settings',
+    multiple=True,
+    metavar='NAME=VALUE',
+    help='Setting of the robot, such as glue=false; see docs/robot.md.',
+)
 @click.option('--view', is_flag=True, help='Serve a web page that shows the trials live.')
 @click.option(
     '--view-host',
@@ -111,6 +118,8 @@ def run(
     pace: float,
     placing_timeout: float,
     retries: int,
+    robot: bool,
+    robot_settings: tuple[str, ...],
     view: bool,
     view_host: str,
     view_port: int,
@@ -147,6 +156,7 @@ def run(
         view=page,
         placing_timeout_s=placing_timeout,
         retries=retries,
+        robot=robot_for(specs, script, robot, robot_settings),
     )
     records = RecordFile(spec.records)
     wanted = {trial.trial_id for trial in specs}
@@ -159,7 +169,7 @@ def run(
         click.echo(f'The page: {bringup.page.url}', err=True)
         if sys.stdin.isatty() and (os.environ.get('DISPLAY') or os.environ.get('WAYLAND_DISPLAY')):
             place = (bringup.page.host, bringup.page.port)
-            _open_when_served(bringup.page.url, place)
+            open_when_served(bringup.page.url, place)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     ended: list[TrialRecord] = []
     try:
@@ -172,28 +182,6 @@ def run(
         draw(ended, out / 'pictures')
     successes = sum(record.status is TrialStatus.SUCCESS for record in ended)
     return int(successes < len(specs))
-
-
-def _open_when_served(url: str, place: tuple[str, int]) -> None:
-    """Open a page in a browser as soon as its server accepts connections."""
-
-    def wait() -> None:
-        end = time.monotonic() + _SERVED_WITHIN_S
-        while time.monotonic() < end:
-            if _is_served(place):
-                webbrowser.open(url)
-                return
-            time.sleep(_LOOK_PERIOD_S)
-
-    threading.Thread(target=wait, name='browser', daemon=True).start()
-
-
-def _is_served(place: tuple[str, int]) -> bool:
-    try:
-        socket.create_connection(place, timeout=1.0).close()
-    except OSError:
-        return False
-    return True
 
 
 def _summarise(path: Path, wanted: set[str]) -> list[TrialRecord]:

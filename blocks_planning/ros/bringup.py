@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,7 +28,7 @@ from blocks_planning.ros.runtime.process import BAD_INPUT
 from blocks_planning.ros.runtime.processes import NodeProcess, stop_all
 from blocks_planning.ros.runtime.reserving import ReservedPort
 from blocks_planning.ros.runtime.watcher import Watcher
-from blocks_planning.ros.wire.graph import LISTENERS, TRIAL_VIEW, WATCHER
+from blocks_planning.ros.wire.graph import LISTENERS, ROBOT_ARM, TRIAL_VIEW, WATCHER
 from blocks_planning.view.scene import Scene
 from blocks_planning.view.web.guards import Address, address_of
 
@@ -50,6 +51,7 @@ class BringupSpec:
         view: host and port of the page, port 0 for a free one; None for no page.
         placing_timeout_s: how long the world may be silent when it has to answer [s].
         retries: how often an order is given again that the world cannot carry out.
+        robot: settings of a simulated robot that carries out the orders; None for no robot.
     """
 
     script: Path
@@ -63,6 +65,7 @@ class BringupSpec:
     view: tuple[str, int] | None = None
     placing_timeout_s: float = PLACING_TIMEOUT.default
     retries: int = RETRIES.default
+    robot: Mapping[str, object] | None = None
 
     @property
     def records(self) -> Path:
@@ -84,6 +87,8 @@ class Bringup:
             self._names.append('bag_recorder')
         if spec.markers:
             self._names.append('marker_publisher')
+        if spec.robot is not None:
+            self._names.append(ROBOT_ARM.name)
         self._port: ReservedPort | None = None
         self.page: Address | None = None
         if spec.view is not None:
@@ -119,6 +124,10 @@ class Bringup:
                 'journal_dir': self._spec.out / 'journal',
                 'placing_s': float(self._spec.placing_s),
             }
+            if self._spec.robot is not None:
+                parameters['cell_size'] = self._spec.robot['cell_m']
+        if name == ROBOT_ARM.name and self._spec.robot is not None:
+            parameters = {'state_dir': self._spec.out / 'robot', **_as_yaml(self._spec.robot)}
         if name == 'bag_recorder':
             parameters = {'bag_dir': self._spec.bag}
         if name == 'trial_orchestrator':
@@ -204,3 +213,8 @@ class Bringup:
                 raise BlocksPlanningError(said)
             process.is_given_up = True
             sys.stderr.write(f'{said}; the trials continue without it\n')
+
+
+def _as_yaml(settings: Mapping[str, object]) -> dict[str, str]:
+    """Values as they are written in parameters."""
+    return {name: json.dumps(value) for name, value in settings.items()}

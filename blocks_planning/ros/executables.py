@@ -54,5 +54,10 @@ def trial_view() -> None:
     _start('trial_view')
 
 
+def robot_arm() -> None:
+    """Carries out orders with a simulated robot."""
+    _start('robot_arm')
+
+
 if __name__ == '__main__':
     _start(sys.argv.pop(1))

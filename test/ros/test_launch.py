@@ -77,7 +77,7 @@ def _plain(parameters: dict[str, Any]) -> dict[str, Any]:
     return {k: v.values[0] if isinstance(v, Said) else v for k, v in parameters.items()}
 
 
-ALL = {'bag_dir': 'bag', 'markers': 'true', 'view': 'true'}
+ALL = {'bag_dir': 'bag', 'markers': 'true', 'view': 'true', 'robot': 'true'}
 
 
 def test_every_node_can_be_started(launch_file: dict[str, Any]) -> None:

@@ -23,6 +23,7 @@ from source_imports import ROOT
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.ros.nodes.bag_recorder import BagRecorder
 from blocks_planning.ros.nodes.marker_publisher import MarkerPublisher
+from blocks_planning.ros.nodes.robot_arm import RobotArm
 from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
 from blocks_planning.ros.nodes.trial_view import TrialView
 from blocks_planning.ros.wire.graph import GRAPH
@@ -42,6 +43,7 @@ def make(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, graph: Graph) -> Calla
         'bag_recorder': BagRecorder,
         'marker_publisher': MarkerPublisher,
         'trial_view': TrialView,
+        'robot_arm': RobotArm,
     }
 
     def call(name: str, **parameters: Any) -> Any:
@@ -103,8 +105,9 @@ def test_parameters_of_a_wrong_type_or_value_are_refused(
     name: str, make: Callable[..., Any]
 ) -> None:
     for parameter, default in own_parameters(make(name)).items():
-        wrong: list[Any] = [True, [1, 2], 12 if not isinstance(default, int) else 1.5]
-        if isinstance(default, (int, float)):
+        wrong: list[Any] = [[1, 2], 12 if not isinstance(default, int) else 1.5]
+        wrong.append('much' if isinstance(default, bool) else True)
+        if isinstance(default, (int, float)) and not isinstance(default, bool):
             wrong += ['much', type(default)(-1), type(default)(2**62)]
         for value in wrong:
             with pytest.raises(ConfigurationError) as refused:

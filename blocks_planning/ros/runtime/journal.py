@@ -78,7 +78,7 @@ class Journal:
             RecordError: if the file cannot be written or read.
         """
         self.close()
-        self._path = path = self._folder / (_file_name(trial_id) + SUFFIX)
+        self._path = path = self._folder / (file_name(trial_id) + SUFFIX)
         try:
             observations, warning = _read(path)
             if observations:
@@ -239,7 +239,7 @@ def _latest_first(path: Path) -> float:
         return 0.0
 
 
-def _file_name(trial_id: str) -> str:
+def file_name(trial_id: str) -> str:
     """A unique file name for an id; ids come from messages, and must not lead out of the folder."""
     plain = re.sub(r'[^A-Za-z0-9_-]', '_', trial_id)[:150]
     if plain == trial_id:

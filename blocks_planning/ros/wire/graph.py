@@ -53,6 +53,7 @@ TRIAL_VIEW = NodeTopics(
     (TRIAL, STATE, PROPOSAL, SUBGOAL, OUTCOME),
     (PROPOSAL,),
 )
+ROBOT_ARM = NodeTopics('robot_arm', (TRIAL, OUTCOME), ())
 WATCHER = NodeTopics('watcher', (TRIAL, STATE, SUBGOAL, OUTCOME), ())
 
 GRAPH = {
@@ -65,6 +66,7 @@ GRAPH = {
         BAG_RECORDER,
         MARKER_PUBLISHER,
         TRIAL_VIEW,
+        ROBOT_ARM,
         WATCHER,
     )
 }

@@ -34,6 +34,26 @@ def order_to_ros(order: ArmOrder, cell_m: float) -> Place.Goal:
     )
 
 
+def order_from_ros(board: Board, goal: Place.Goal) -> ArmOrder:
+    """An order for an arm; :func:`order_to_ros` makes goals of orders.
+
+    Raises:
+        MessageError: for a block that would not be on the board.
+    """
+    (placed,) = blocks_from_ros(board, [goal.placement], 'placement')
+    return ArmOrder(goal.trial_id, goal.sequence, placed)
+
+
+def report_to_ros(report: ArmReport) -> Place.Result:
+    """What became of an order, as the result of a goal."""
+    return Place.Result(
+        code=int(report.code),
+        reason=report.reason,
+        landed=list(map(placed_to_ros, report.landed)),
+        gone=list(map(placed_to_ros, report.gone)),
+    )
+
+
 def report_from_ros(board: Board, order: ArmOrder, result: Place.Result) -> ArmReport:
     """What became of an order.
 
