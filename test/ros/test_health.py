@@ -23,6 +23,7 @@ from blocks_planning.ros.nodes import subgoal_selector, world
 from blocks_planning.ros.nodes.action_searcher import ActionSearcher
 from blocks_planning.ros.nodes.bag_recorder import BagRecorder
 from blocks_planning.ros.nodes.marker_publisher import MarkerPublisher
+from blocks_planning.ros.nodes.robot_arm import RobotArm
 from blocks_planning.ros.nodes.trial_view import TrialView
 from blocks_planning.ros.runtime.attendance import Attendance
 from blocks_planning.ros.runtime.diagnostics import Health
@@ -70,6 +71,7 @@ def test_every_node_says_how_it_is(graph: Graph, tmp_path: Path) -> None:
         'bag_recorder': graph.add(BagRecorder, parameter_overrides=parameters),
         'marker_publisher': graph.add(MarkerPublisher),
         'trial_view': graph.add(TrialView),
+        'robot_arm': graph.add(RobotArm),
     }
     graph.spin_until(lambda: listener.of(nodes['world']))
     assert listener.of(nodes['world'])[0]['peers_missing'] == 'trial_orchestrator'

@@ -149,7 +149,7 @@ def test_goal_of_an_unknown_trial_is_told_to_come_again(graph: Graph) -> None:
     graph.spin_until(got.done)
     result = got.result().result
     assert result.code == Codes.CODE_TRY_AGAIN
-    assert result.reason == 'trial elsewhere is not announced on topic trial'
+    assert result.reason == 'no trial elsewhere of world observed is announced on topic trial'
 
 
 @pytest.mark.parametrize(

@@ -124,15 +124,16 @@ class RobotArm(PartNode):
     # --- trials -----------------------------------------------------------------------------
 
     def advance(self, message: Message) -> tuple[Message, ...]:
-        """See :class:`PartNode`; a trial that begins gets a robot, one that ends stops it."""
+        """See :class:`PartNode`; a trial whose world needs an arm gets a robot until it ends."""
         before = self.memory
         said = super().advance(message)
         if self.memory is before:
             return said
         if before is not None and (self.memory is None or self.memory.trial_id != before.trial_id):
             self._leave()
-        if self.memory is not None and self.robot is None:
-            self.robot = self._robot_for(self.memory)
+        trial = self.memory
+        if trial is not None and self.robot is None and not trial.spec.world.simulates:
+            self.robot = self._robot_for(trial)
         return said
 
     def _robot_for(self, trial: TrialStarted) -> RobotTrial:
@@ -179,7 +180,7 @@ class RobotArm(PartNode):
         """The result of an order, or a future of its report."""
         request, robot = goal.request, self.robot
         if robot is None or self.memory.trial_id != request.trial_id:
-            reason = f'trial {request.trial_id} is not announced on topic trial'
+            reason = f'no trial {request.trial_id} of world observed is announced on topic trial'
             return Place.Result(code=int(PlacementCode.TRY_AGAIN), reason=reason)
         try:
             order = order_from_ros(self.board, request)
