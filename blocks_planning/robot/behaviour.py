@@ -245,6 +245,8 @@ class Behaviour:
             return None
         if memory.reason is not None:
             return Phase.RETREAT
+        if not self._go(z=memory.travel):  # the next block may be higher
+            return None
         memory.number = self._feeder.present(self._block)
         return Phase.APPROACH
 
