@@ -1,10 +1,15 @@
 """A searcher of one's own in place of ``action_searcher``: depth first, large blocks first."""
 
+from functools import partial
+
 import rclpy.node
 from blocks_planning_msgs import msg
 
 from blocks_planning.ros.runtime import process
 from blocks_planning.ros.wire import qos
+
+LATCHED = {'trial': msg.TrialSpec, 'state': msg.WorldState, 'subgoal': msg.Subgoal}
+LATCHED |= {'hold': msg.Hold}
 
 
 class MySearcher(rclpy.node.Node):
@@ -12,16 +17,18 @@ class MySearcher(rclpy.node.Node):
 
     def __init__(self):
         super().__init__('my_searcher')
-        self.trial, self.state, self.subgoal = msg.TrialSpec(), None, None
+        self.latest = {name: kind() for name, kind in LATCHED.items()}
         self.result = self.create_publisher(msg.SearchResult, 'search/result', qos.stream())
         self.action = self.create_publisher(msg.PlaceBlock, 'action', qos.stream())
-        for kind, topic, callback in (
-            (msg.TrialSpec, 'trial', lambda m: setattr(self, 'trial', m)),
-            (msg.WorldState, 'state', lambda m: self.act(m, self.subgoal)),
-            (msg.Subgoal, 'subgoal', lambda m: self.act(self.state, m)),
-        ):
-            self.create_subscription(kind, topic, callback, qos.every_latched_state())
+        for name, kind in LATCHED.items():
+            keep = partial(self.keep, name)
+            self.create_subscription(kind, name, keep, qos.every_latched_state())
         self.create_subscription(msg.SearchRequest, 'search/request', self.search, qos.stream())
+
+    def keep(self, name, message):
+        """Keep the latest message of a topic, and act on it."""
+        self.latest[name] = message
+        self.act(**self.latest)
 
     def search(self, asked):
         """Answer each query of a request."""
@@ -49,7 +56,8 @@ class MySearcher(rclpy.node.Node):
             return [] if built == target else None
         self.seen.add(built)
         row, left = min(target - built)  # the lowest empty cell: nothing may cover it later
-        for block in sorted(self.trial.library, key=lambda block: -block.width * block.height):
+        library = self.latest['trial'].library
+        for block in sorted(library, key=lambda block: -block.width * block.height):
             cells = {(row + y, left + x) for y in range(block.height) for x in range(block.width)}
             rests = row == 0 or any((row - 1, c) in built for _, c in cells)
             if rests and cells <= target - built:
@@ -58,18 +66,17 @@ class MySearcher(rclpy.node.Node):
                     return [msg.Placement(block=block, column=left, row=row), *rest]
         return None
 
-    def act(self, state, subgoal):
+    def act(self, trial, state, subgoal, hold):
         """Order the next placement. This holds in a world that carries out every order."""
-        self.state, self.subgoal = state, subgoal
-        trials = {getattr(said, 'trial_id', None) for said in (state, subgoal, self.trial)}
-        if len(trials) > 1 or not subgoal.decisions[-1].subgoals:
+        if not trial.trial_id == state.trial_id == subgoal.trial_id or not subgoal.decisions:
             return
-        chosen = subgoal.decisions[-1].subgoals[subgoal.decisions[-1].executed - 1]
-        done = state.sequence - subgoal.sequence
-        if 0 <= done < chosen.execute:
+        latest, done = subgoal.decisions[-1], state.sequence - subgoal.sequence
+        held = hold.trial_id == trial.trial_id and hold.is_held and hold.sequence <= state.sequence
+        chosen = latest.subgoals[latest.executed - 1] if latest.subgoals else None
+        if chosen and 0 <= done < chosen.execute and not held:
             action = msg.PlaceBlock(trial_id=state.trial_id, sequence=state.sequence)
-            placement = chosen.placements[done]
-            action.block, action.column = placement.block, placement.column
+            action.block = chosen.placements[done].block
+            action.column = chosen.placements[done].column
             self.action.publish(action)
 
 

@@ -18,7 +18,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -39,13 +39,16 @@ from blocks_planning.ros.bagging.bags import repair, trials_of
 from blocks_planning.ros.runtime.journal import Journal
 from blocks_planning.ros.runtime.process import initialise
 from blocks_planning.trials import script
+from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.recordfile import RecordFile
 from blocks_planning.trials.verify import contradictions
+from blocks_planning.worlds.world import make_world
 from faults.mutations import spoilt
 
 MOST_TRIALS = 20_000
 """A spoilt script may still be a good one, of more trials than there is time for."""
+UNCERTAIN = make_world('simulated', {'slip': 0.4, 'loss': 0.4, 'blocks': 'loose'})
 LONGEST_S = 20.0
 MOST_LETTERS = 1500
 ONE_IN = 25
@@ -98,8 +101,9 @@ def _parameters(path: Path) -> object:
 def kinds(folder: Path) -> list[Kind]:
     """Every kind of file."""
     config = ROOT / 'config'
+    uncertain = [replace(spec(tower), world=UNCERTAIN) for tower in (SQUARE, CHAIR)]
     bag = write_bag(
-        folder / 'bag', [one for seed in (0, 1) for one in trial_said(spec(CHAIR, seed=seed))[1]]
+        folder / 'bag', [one for said in (spec(CHAIR), *uncertain) for one in trial_said(said)[1]]
     )
     journal = (
         b'blocks_planning/journal 2\n2 1 0;2 1 0 0;\n1 2 3;;\n2 2 1;2 2 0 1;2 1 0 0,1 1 1 0\n'
@@ -109,6 +113,7 @@ def kinds(folder: Path) -> list[Kind]:
         for tower in (SQUARE, CHAIR)
         for name in ('none', 'full')
     ]
+    lines += [run_trial(said).to_line() for said in uncertain]
     good_records = (
         '\n'.join([*lines, '']).encode(),
         lines[-1].encode(),

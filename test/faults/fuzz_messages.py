@@ -138,6 +138,7 @@ def fuzz(folder: Path, count: int, seed: int, interruptions: int = 0) -> Report:
         seeds=2_000,
         searches=[{'name': 'bfs', 'depth': 2}],
         strategies=[{'name': 'scoping', 'lambda': 0.002}],
+        worlds=[{'name': 'simulated', 'slip': 0.1, 'loss': 0.1, 'blocks': 'loose'}],
     )
     out, log = folder / 'out', folder / 'log.txt'
     namespace = f'/fuzz_{seed}'

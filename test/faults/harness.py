@@ -32,6 +32,12 @@ _SEARCHES: list[dict[str, Any]] = [
     {'name': 'bfs', 'depth': 5},
     {'name': 'astar', 'iterations': 512},
 ]
+_WORLDS: list[dict[str, Any]] = [
+    {'name': 'simulated', 'slip': 0.1, 'loss': 0.1},
+    {'name': 'simulated'},
+    {'name': 'simulated', 'slip': 0.02, 'blocks': 'loose'},
+]
+"""Each script is built in one of them, in turn."""
 
 
 class _Over(Exception):
@@ -75,7 +81,8 @@ class Harness:
             number += 1
             folder = self._folder / f'script{number}'
             folder.mkdir(parents=True)
-            self._run_script(self._script(folder, per_script), folder / 'out')
+            world = _WORLDS[(number - 1) % len(_WORLDS)]
+            self._run_script(self._script(folder, per_script, world), folder / 'out')
             say(
                 f'script {number}: {self.report.trials} trials, {self.report.kills.total()} kills, '
                 f'{time.monotonic() - begun:.0f} s'
@@ -88,13 +95,14 @@ class Harness:
         self._subject.stop()
         self._graph.close()
 
-    def _script(self, folder: Path, trials: int) -> Path:
+    def _script(self, folder: Path, trials: int, world: dict[str, Any]) -> Path:
         towers = self._chance.sample(range(1, 17), max(1, trials // len(_STRATEGIES)))
         return write_script(
             folder,
             stimuli=[f'cogsci2021/{tower}' for tower in towers],
             searches=[self._chance.choice(_SEARCHES)],
             strategies=_STRATEGIES[:trials],
+            worlds=[world],
             first_seed=self._chance.randrange(2**32),
         )
 

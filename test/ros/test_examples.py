@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
+import runpy
 import signal
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
+from blocks_planning_msgs import msg
 from graphs import NODES, record_lines, write_script
 from source_imports import ROOT
 
@@ -77,6 +81,33 @@ def test_example_takes_the_place_of_a_node(examples: list[str], tmp_path: Path) 
     for record in records:
         assert record.status is TrialStatus.SUCCESS
         assert list(contradictions(record)) == []
+
+
+@pytest.mark.parametrize(
+    ('hold', 'orders'),
+    [
+        ({}, 1),
+        ({'trial_id': 't', 'is_held': False, 'sequence': 0}, 1),
+        ({'trial_id': 't', 'is_held': True, 'sequence': 4}, 1),
+        ({'trial_id': 't', 'is_held': True, 'sequence': 3}, 0),
+        ({'trial_id': 'another', 'is_held': True, 'sequence': 3}, 1),
+    ],
+    ids=['silent', 'free', 'later', 'now', 'another'],
+)
+def test_custom_searcher_gives_no_order_that_is_held(hold: dict[str, Any], orders: int) -> None:
+    act = runpy.run_path(str(ROOT / 'docs/examples/custom_searcher.py'))['MySearcher'].act
+    block = msg.Placement(block=msg.Block(width=2, height=1), column=5, row=1)
+    chosen = msg.PlannedSubgoal(execute=1, placements=[block])
+    decision = msg.Decision(subgoals=[chosen], executed=1)
+    given: list[Any] = []
+    act(
+        SimpleNamespace(action=SimpleNamespace(publish=given.append)),
+        msg.TrialSpec(trial_id='t'),
+        msg.WorldState(trial_id='t', sequence=3),
+        msg.Subgoal(trial_id='t', sequence=3, decisions=[decision]),
+        msg.Hold(**hold),
+    )
+    assert [(one.sequence, one.column) for one in given] == [(3, 5)] * orders
 
 
 @pytest.mark.parametrize('example', [*EXAMPLES, 'clumsy_arm'])
