@@ -2,7 +2,7 @@
 # Paths in recipes are relative, so the checkout may lie in a folder with spaces in its name.
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo-setup robot-setup demo reproduce test parity robot faults fuzz cancels lint types bench
+.PHONY: help setup demo-setup robot-setup demo reproduce test long parity robot faults fuzz cancels lint types bench
 .PHONY: soak dist clean
 .SUFFIXES:
 
@@ -67,8 +67,12 @@ test: setup  ## Run the tests (ARGS='-k word' for some, JOBS=4 for more processe
 	$(BIN)/python test/compile_kernels.py
 	$(BIN)/pytest -n $(JOBS) $(ARGS)
 
-parity: setup  ## Compare 272 trials through the graph with the same in one process
-	BLOCKS_PLANNING_PARITY=all $(BIN)/pytest -n $(JOBS) test/parity $(ARGS)
+parity: setup  ## Compare 391 trials through the graph with the same in one process
+	$(BIN)/pytest -n $(JOBS) -m '' test/parity $(ARGS)
+
+long: setup  ## Run the tests that take long (ARGS='-k word' for some)
+	$(BIN)/python test/compile_kernels.py
+	$(BIN)/pytest -n $(JOBS) -m long $(ARGS)
 
 faults: setup  ## Kill nodes while trials run (ARGS='--kills 200 --trials 60 --seed 0')
 	PYTHONPATH=test $(BIN)/python -m faults $(ARGS)

@@ -35,6 +35,9 @@ class SolveStatus(str, Enum):
 class Problem:
     """Fill ``region``, and nothing else, from the state in which ``built`` is filled.
 
+    ``blocks`` are those that fill ``built``, for searches that plan on blocks; other searches
+    ignore them.
+
     Raises:
         InvalidInput: if the region has cells off the board, or does not contain the built cells.
     """
@@ -42,6 +45,7 @@ class Problem:
     task: Task
     built: Mask
     region: Mask
+    blocks: tuple[Placed, ...] = ()
 
     def __post_init__(self) -> None:
         if not 0 <= self.region <= self.task.board.full:

@@ -3,6 +3,9 @@
 A search is a frozen dataclass whose fields are its settings (:mod:`blocks_planning.settings`). Its
 ``run(problem, seed, budget, cancel)`` may assume that the problem is neither solved already nor
 without a legal placement: :func:`.solve.solve` checks both first.
+
+A search may set ``plans_on_blocks``. Then its problems say which blocks fill the state, because
+towers with the same cells can differ in more than their cells.
 """
 
 from __future__ import annotations
@@ -120,6 +123,43 @@ def _iterations() -> Any:
 
 def _execute() -> Any:
     return setting('first', 'Part of an incomplete path that is executed.', choices=EXECUTIONS)
+
+
+@dataclass(frozen=True)
+class StableBreadthFirst(Configured):
+    """Breadth-first lookahead that generates only towers of loose blocks that do not fall.
+
+    Where no child falls, it gives the placements and the cost of bfs. See :mod:`.stable`.
+    """
+
+    name: ClassVar[str] = 'stable_bfs'
+    plans_on_blocks: ClassVar[bool] = True
+    depth: int = setting(
+        3, 'Number of placements to look ahead.', least=1, most=MAX_DEPTH, unit='placements'
+    )
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        """See :class:`Search`."""
+        from blocks_planning.search import stable
+
+        return stable.solve_stable(problem, self.depth, seed, budget, cancel)
+
+
+@dataclass(frozen=True)
+class StableRandom(Configured):
+    """Uniformly drawn placements after which a tower of loose blocks does not fall. Cost 0.
+
+    Where nothing falls, it gives the placements of random. See :mod:`.stable`.
+    """
+
+    name: ClassVar[str] = 'stable_random'
+    plans_on_blocks: ClassVar[bool] = True
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        """See :class:`Search`."""
+        from blocks_planning.search import stable
+
+        return stable.solve_stable(problem, 0, seed, budget, cancel)
 
 
 @dataclass(frozen=True)
@@ -267,7 +307,10 @@ class Exact(Configured):
 SEARCHES = Registry(
     'search',
     'blocks_planning.searches',
-    (BreadthFirst, AStar, BestFirst, Beam, TreeSearch, RandomPlacement, Exact),
+    (
+        *(BreadthFirst, AStar, BestFirst, Beam, TreeSearch, RandomPlacement, Exact),
+        *(StableBreadthFirst, StableRandom),
+    ),
 )
 
 

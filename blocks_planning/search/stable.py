@@ -1,8 +1,8 @@
-"""Searches that never plan a tower that falls: ``bfs`` and ``random`` with loose blocks.
+"""Searches that never plan a tower that falls: ``stable_bfs`` and ``stable_random``.
 
 They generate only stable children (:mod:`blocks_planning.board.statics`), and are otherwise equal
-to the searches of :mod:`.searches`, draw for draw: if no child falls, they give the same placements
-at the same cost. Here a state is a set of placed blocks, not of cells, because two towers with the
+to ``bfs`` and ``random``, draw for draw: if no child falls, they give the same placements at the
+same cost. Here a state is a set of placed blocks, not of cells, because two towers with the
 same cells can differ in stability; so states are not merged. Kernels cannot call a linear program,
 therefore this module is Python. It evaluates thousands of states per second, whereas the compiled
 searches evaluate tens of millions.
@@ -17,7 +17,7 @@ from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Mask, area
 from blocks_planning.board.statics import holds
-from blocks_planning.errors import ConfigurationError, InvalidInput
+from blocks_planning.errors import InvalidInput
 from blocks_planning.search.randomness import MAX_SEED, Generator, mask_words
 from blocks_planning.search.result import (
     DEFAULT_BUDGET,
@@ -27,7 +27,6 @@ from blocks_planning.search.result import (
     SolveResult,
     SolveStatus,
 )
-from blocks_planning.search.searches import BreadthFirst, RandomPlacement, Search
 from blocks_planning.settings import check_whole
 
 Stays = Callable[[tuple[Placed, ...]], bool]
@@ -64,11 +63,10 @@ class _Choice(NamedTuple):
 
 def solve_stable(
     problem: Problem,
-    search: Search,
+    depth: int,
     seed: int,
     budget: int = DEFAULT_BUDGET,
     cancel: CancelToken | None = None,
-    blocks: Path = (),
     stays: Stays = holds,
 ) -> SolveResult:
     """Fill a region by placements that keep the tower stable.
@@ -77,32 +75,27 @@ def solve_stable(
     and so evaluated.
 
     Args:
-        problem: state and region.
-        search: bfs or random.
+        problem: state, the blocks that fill it, and region.
+        depth: number of placements to look ahead; 0 draws each placement.
         seed: of the trial, 0 to 2**64 - 1.
         budget: b [states], 0 to 2**63 - 1.
         cancel: ends the solve from another thread.
-        blocks: the blocks that fill the problem's state.
         stays: decides which towers are stable.
 
     Raises:
-        ConfigurationError: for another search, if the seed or the budget is out of its range, or
-            if statics needs scipy and it is not installed.
-        InvalidInput: if ``blocks`` do not fill exactly the built cells.
+        ConfigurationError: if the seed or the budget is out of its range, or if statics needs
+            scipy and it is not installed.
+        InvalidInput: if the problem's blocks do not fill exactly its built cells.
     """
     check_whole('seed', seed, 0, MAX_SEED)
     check_whole('budget', budget, 0, MAX_BUDGET)
-    if not isinstance(search, BreadthFirst | RandomPlacement):
-        raise ConfigurationError(
-            f'search must be bfs or random for loose blocks, got {search.name!r}'
-        )
-    board = problem.task.board
+    blocks, board = problem.blocks, problem.task.board
     if sum(rules.cells_of(board, block) for block in blocks) != problem.built:
         raise InvalidInput(
             f'blocks {[tuple(block) for block in blocks]} must fill exactly the built cells '
             f'{problem.built:#x}'
         )
-    finder = _Finder(problem, search, stays, cancel or CancelToken())
+    finder = _Finder(problem, depth, stays, cancel or CancelToken())
     start = _Tower(problem.built, blocks)
     if start.built == problem.region:
         return SolveResult(SolveStatus.SOLVED)
@@ -136,13 +129,13 @@ class _Finder:
     def __init__(
         self,
         problem: Problem,
-        search: BreadthFirst | RandomPlacement,
+        depth: int,
         stays: Stays,
         cancel: CancelToken,
     ) -> None:
         self.problem = problem
         self.evaluated = 0
-        self._search = search
+        self._depth = depth
         self._stays = stays
         self._cancel = cancel
 
@@ -165,16 +158,16 @@ class _Finder:
         return next(self._children(tower), None) is not None
 
     def _choose(self, tower: _Tower, generator: Generator) -> _Choice:
-        if isinstance(self._search, BreadthFirst):
-            return self._look_ahead(tower, self._search.depth, generator)
+        if self._depth:
+            return self._look_ahead(tower, generator)
         legal = [placed for placed, _ in self._children(tower)]
         return _Choice((legal[generator.below(len(legal))],) if legal else (), 0)
 
-    def _look_ahead(self, tower: _Tower, depth: int, generator: Generator) -> _Choice:
+    def _look_ahead(self, tower: _Tower, generator: Generator) -> _Choice:
         """Breadth-first lookahead, as in the compiled search."""
         level = [_Node(tower, ())]
         seen: list[_Node] = []
-        for _ in range(depth):
+        for _ in range(self._depth):
             following: list[_Node] = []
             for node in level:
                 if node.tower.built == self.problem.region:

@@ -21,10 +21,14 @@ from blocks_planning.subgoals.regions import Region
 
 
 class Query(NamedTuple):
-    """Can exactly ``target`` be filled from the state ``built``, and at what cost?"""
+    """Can exactly ``target`` be filled from the state ``built``, and at what cost?
+
+    ``blocks`` are those that fill ``built`` if the search plans on blocks; otherwise it is empty.
+    """
 
     built: Mask
     target: Mask
+    blocks: tuple[Placed, ...] = ()
 
 
 Known: TypeAlias = Mapping[Query, SolveResult]
@@ -44,6 +48,7 @@ class Situation:
         proposals: of a person in this state, in order; empty unless the strategy asks a person.
         blocks: the blocks that stand, in the order in which they landed.
         decisions: number of decisions made earlier in the trial.
+        plans_on_blocks: whether the search must know the blocks that fill a state.
     """
 
     task: Task
@@ -53,6 +58,16 @@ class Situation:
     proposals: tuple[Proposal, ...] = ()
     blocks: tuple[Placed, ...] = ()
     decisions: int = 0
+    plans_on_blocks: bool = False
+
+    @property
+    def start(self) -> tuple[Placed, ...]:
+        """The blocks of a query in this state."""
+        return self.blocks if self.plans_on_blocks else ()
+
+    def after(self, query: Query, result: SolveResult) -> tuple[Placed, ...]:
+        """The blocks of a query in the state in which a solved one ends."""
+        return (*query.blocks, *result.placements) if self.plans_on_blocks else ()
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,7 @@ class Human(Planner):
         """See :class:`Strategy`. Proposals are solved one by one, up to the first that can be."""
         chains: list[Chain] = []
         for chain in self.chains(situation):
-            (query,) = queries_along(chain, situation.built)
+            (query,) = queries_along(chain, situation)
             if query not in situation.known:
                 return [query]
             chains.append(chain)

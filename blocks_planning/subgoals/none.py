@@ -45,7 +45,7 @@ class NoSubgoals(Planner):
         if self.failure == 'give_up':
             return first_solved(candidates)
         for chain in (candidate.regions for candidate in candidates):
-            (query,) = queries_along(chain, situation.built)
+            (query,) = queries_along(chain, situation)
             result = situation.known.get(query)
             if result is not None and result.plan:
                 return 0

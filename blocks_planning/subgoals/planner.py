@@ -17,6 +17,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
+from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Mask, area
 from blocks_planning.search.result import SolveStatus
 from blocks_planning.settings import Configured
@@ -25,7 +26,6 @@ from blocks_planning.subgoals.decision import (
     Candidate,
     Chain,
     Decision,
-    Known,
     Query,
     Situation,
     Subgoal,
@@ -41,23 +41,26 @@ class _Step(NamedTuple):
         cost: of their solves, up to the first unsolved one [states].
         status: of the first unsolved one, or solved.
         missing: the first query that is not answered.
+        blocks: of a query in that state.
     """
 
     built: Mask
     cost: int
     status: SolveStatus
     missing: Query | None
+    blocks: tuple[Placed, ...]
 
 
-def _step(before: _Step, region: Region, known: Known) -> _Step:
+def _step(before: _Step, region: Region, situation: Situation) -> _Step:
     """The step after one more subgoal."""
-    query = Query(before.built, region.target(before.built))
+    query = Query(before.built, region.target(before.built), before.blocks)
     if before.missing is not None or before.status is not SolveStatus.SOLVED:
         return before._replace(built=query.target)
-    result = known.get(query)
+    result = situation.known.get(query)
     if result is None:
         return before._replace(built=query.target, missing=query)
-    return _Step(query.target, before.cost + result.planning_cost, result.status, None)
+    cost, blocks = before.cost + result.planning_cost, situation.after(query, result)
+    return _Step(query.target, cost, result.status, None, blocks)
 
 
 def _shared(one: Chain, other: Chain) -> int:
@@ -154,12 +157,12 @@ class Planner(Configured):
         """
         size = area(situation.built)
         before: Chain = ()
-        steps = [_Step(situation.built, 0, SolveStatus.SOLVED, None)]
+        steps = [_Step(situation.built, 0, SolveStatus.SOLVED, None, situation.start)]
         for chain in chains:
             shared = _shared(before, chain)
             del steps[shared + 1 :]
             for region in chain[shared:]:
-                steps.append(_step(steps[-1], region, situation.known))
+                steps.append(_step(steps[-1], region, situation))
             before, last = chain, steps[-1]
             yield last.missing or self._candidate(chain, area(last.built) - size, last)
 
@@ -171,7 +174,7 @@ class Planner(Configured):
     def plan(self, chain: Chain, situation: Situation) -> Iterator[Subgoal]:
         """The subgoals of a chosen chain, with the plans that fill them."""
         executed = self.subgoals_of(chain)
-        for region, query in zip(executed, queries_along(executed, situation.built), strict=True):
+        for region, query in zip(executed, queries_along(executed, situation), strict=True):
             result = situation.known[query]
             yield Subgoal(
                 region=region,
@@ -184,23 +187,31 @@ class Planner(Configured):
             )
 
 
-def queries_along(chain: Chain, built: Mask) -> Iterator[Query]:
-    """The queries that must be solved to execute a chain from a state.
-
-    A solved subgoal fills exactly its target, so the next one begins there.
-    """
+def targets_along(chain: Chain, built: Mask) -> Iterator[Mask]:
+    """The filled cells after each subgoal of a chain; the next one begins there."""
     for region in chain:
-        target = region.target(built)
-        yield Query(built, target)
+        built = region.target(built)
+        yield built
+
+
+def queries_along(chain: Chain, situation: Situation) -> Iterator[Query]:
+    """The queries that must be solved to execute a chain.
+
+    If the search plans on blocks, all but the last must be answered when the next is asked for.
+    """
+    built, blocks = situation.built, situation.start
+    for number, target in enumerate(targets_along(chain, built), start=1):
+        query = Query(built, target, blocks)
+        yield query
         built = target
+        if situation.plans_on_blocks and number < len(chain):
+            blocks = situation.after(query, situation.known[query])
 
 
 def cells_added(chain: Chain, built: Mask) -> int:
     """r, the cells that a chain adds to a state."""
-    target = built
-    for region in chain:
-        target = region.target(target)
-    return area(target) - area(built)
+    *_, last = built, *targets_along(chain, built)
+    return area(last) - area(built)
 
 
 def value_of(cells: int, planning_cost: int, lam: float) -> float:

@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from blocks_planning.board.blocks import Placed, format_library
 from blocks_planning.board.geometry import Mask
 from blocks_planning.errors import InvalidInput
+from blocks_planning.subgoals.decision import Query
 from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.messages import (
     Message,
@@ -27,6 +28,7 @@ from blocks_planning.trials.world import status_of
 from blocks_planning.worlds.observation import (
     Observations,
     impossible,
+    mask_of,
     states_of,
 )
 
@@ -62,14 +64,23 @@ class Consistency:
                 self._check_subgoal(message)
             case SearchRequest(_, queries):
                 for query in queries:
-                    if query.target & ~query.built & ~self.spec.task.silhouette:
-                        raise Contradiction('queries: a target has cells outside the silhouette')
+                    self._check_query(query)
             case SearchAnswer(_, _, result):
                 self._check_blocks(result.placements, 'placements')
                 if result.solution_cost > result.planning_cost:
                     raise Contradiction(
                         'solution_cost: is above the planning cost of all attempts'
                     )
+
+    def _check_query(self, query: Query) -> None:
+        if query.target & ~query.built & ~self.spec.task.silhouette:
+            raise Contradiction('queries: a target has cells outside the silhouette')
+        filled = query.built if self.spec.plans_on_blocks else 0
+        if mask_of(self.spec.task.board, query.blocks) != filled:
+            raise Contradiction(
+                'queries: expected the blocks that fill what is built if the search plans on '
+                f'blocks, and no blocks otherwise, got {len(query.blocks)} blocks'
+            )
 
     def _check_state(self, state: WorldState) -> None:
         if not _is_one_way(self._observations, state.observations):

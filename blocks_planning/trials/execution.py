@@ -34,7 +34,7 @@ from blocks_planning.subgoals.decision import Decision, Subgoal
 from blocks_planning.subgoals.proposals import Proposal
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.spec import TrialSpec
-from blocks_planning.worlds.observation import Observations, states_of
+from blocks_planning.worlds.observation import Blocks, Observations, standing, states_of
 
 
 class Progress(NamedTuple):
@@ -156,6 +156,13 @@ class SubgoalChosen:
     def built(self) -> Mask:
         """The state from which the current subgoal was planned."""
         return self.decision.subgoals[self.index - 1].target if self.index else self.decision.built
+
+    def blocks(self, observations: Observations) -> Blocks:
+        """The blocks of the state from which the current subgoal was planned."""
+        blocks = standing(observations[: self.decisions[-1].sequence + 1])
+        for earlier in self.decision.subgoals[: self.index]:
+            blocks += earlier.placements
+        return blocks
 
     def progress(self, spec: TrialSpec, seen: History) -> Progress:
         """How far the current subgoal has been executed."""

@@ -111,6 +111,7 @@ class _Board:
             known=known,
             blocks=self._blocks,
             decisions=decisions,
+            plans_on_blocks=self._spec.plans_on_blocks,
         )
 
     def carry_out(self, subgoal: Subgoal) -> tuple[TrialStatus, bool]:

@@ -99,7 +99,11 @@ def _act(memory: Memory, only_for: Query | None = None) -> tuple[Memory, tuple[M
     trial, state, chosen = memory.trial, memory.state, memory.chosen
     if trial is None or state is None or chosen is None or chosen.subgoal is None:
         return memory, ()
-    query = Query(chosen.built, chosen.subgoal.target)
+    if chosen.sequence > state.sequence:
+        return memory, ()
+    query = trial.spec.query(
+        chosen.built, chosen.subgoal.target, chosen.blocks(state.observations)
+    )
     if only_for not in (None, query):
         return memory, ()
     if query not in memory.known:
@@ -118,8 +122,6 @@ def _act(memory: Memory, only_for: Query | None = None) -> tuple[Memory, tuple[M
 
 def _next_placement(trial: TrialStarted, state: WorldState, chosen: SubgoalChosen) -> int | None:
     """Index in the plan of the placement to order in the latest state; None if there is none."""
-    if chosen.sequence > state.sequence:
-        return None
     seen = history(trial.spec.task.board, state.observations)
     progress = chosen.progress(trial.spec, seen)
     return progress.done if progress.is_open else None

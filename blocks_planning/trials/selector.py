@@ -116,7 +116,7 @@ def _consider(
     """Accept a proposal; a region that is known to be unsolvable is answered again."""
     memory, said = _go_on(memory, trial.spec, state)
     target = target_of(trial.spec.task, state.built, proposal.region)
-    query = Query(state.built, target)
+    query = trial.spec.query(state.built, target, state.placements)
     is_known = proposal.kind is ProposalKind.BUILD and query in memory.known
     if not said and is_known and proposal.sequence == state.sequence:
         said = _request(trial.trial_id, (query,))
@@ -183,6 +183,7 @@ def _situation(
         proposals=proposed_at(memory.proposals, sequence),
         blocks=standing(seen.observations[: sequence + 1]),
         decisions=0 if chosen is None else len(chosen.decisions),
+        plans_on_blocks=spec.plans_on_blocks,
     )
 
 

@@ -10,14 +10,14 @@ from typing import Any
 
 from blocks_planning import settings
 from blocks_planning.board.blocks import format_library
-from blocks_planning.board.geometry import Board
+from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.board.task import Task
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.families import Registry
 from blocks_planning.search.randomness import MAX_SEED
 from blocks_planning.search.result import DEFAULT_BUDGET, MAX_BUDGET
 from blocks_planning.search.searches import SEARCHES, Search
-from blocks_planning.subgoals.decision import Strategy
+from blocks_planning.subgoals.decision import Query, Strategy
 from blocks_planning.subgoals.registry import STRATEGIES
 from blocks_planning.worlds.observation import Blocks, impossible
 from blocks_planning.worlds.world import WORLDS, Simulated, World
@@ -67,6 +67,15 @@ class TrialSpec:
         problem = impossible(self.task.board, self.built)
         if problem:
             raise ConfigurationError(f'built: {problem}')
+
+    @property
+    def plans_on_blocks(self) -> bool:
+        """Whether the search must know the blocks that fill a state; most do without."""
+        return getattr(self.search, 'plans_on_blocks', False)
+
+    def query(self, built: Mask, target: Mask, blocks: Blocks) -> Query:
+        """A query from a state; its blocks are in it only if the search plans on them."""
+        return Query(built, target, blocks if self.plans_on_blocks else ())
 
     @cached_property
     def trial_id(self) -> str:

@@ -1,11 +1,10 @@
 """The record of a trial through the ROS graph is the record of the same trial in one process.
 
-``BLOCKS_PLANNING_PARITY=all`` (``make parity``) compares more trials, over all 16 towers.
+``make parity`` compares more trials, over all 16 towers.
 """
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
@@ -71,9 +70,20 @@ _SMALL: list[dict[str, Any]] = [
         'budget': 500,
         'seeds': 1,
     },
+    {  # 6
+        'stimuli': ['cogsci2021/5'],
+        'searches': [{'name': 'stable_bfs', 'depth': 1}, {'name': 'stable_random'}],
+        'strategies': [
+            {'name': 'none'},
+            {'name': 'scoping', 'commit': 'action'},
+            {'name': 'full', 'lambda': 0.1},
+        ],
+        'worlds': [{'name': 'simulated', 'slip': 0.1, 'blocks': 'loose'}],
+        'budget': 10,
+        'seeds': 1,
+    },
 ]
 _LARGE: list[dict[str, Any]] = [
-    *_SMALL,
     {  # 128
         'stimuli': ['cogsci2021'],
         'searches': [{'name': 'bfs', 'depth': 3}],
@@ -115,7 +125,7 @@ _LARGE: list[dict[str, Any]] = [
         'seeds': 2,
     },
 ]
-SCRIPTS = _LARGE if os.environ.get('BLOCKS_PLANNING_PARITY') == 'all' else _SMALL
+SCRIPTS = [*_SMALL, *(pytest.param(script, marks=pytest.mark.long) for script in _LARGE)]
 
 
 @pytest.mark.parametrize('script', SCRIPTS, ids=map(str, range(len(SCRIPTS))))

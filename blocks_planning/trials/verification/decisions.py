@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from blocks_planning.search.result import SolveResult, SolveStatus
 from blocks_planning.subgoals.decision import Candidate, Chain, Decision, Query, Situation
-from blocks_planning.subgoals.planner import cells_added, queries_along
+from blocks_planning.subgoals.planner import cells_added, targets_along
 from blocks_planning.subgoals.proposals import proposed_at
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.worlds.observation import Blocks, blocks_after
@@ -26,15 +26,16 @@ def situation_of(record: TrialRecord, index: int) -> Situation:
         task=record.spec.task,
         built=entry.decision.built,
         seed=record.spec.seed,
-        known=dict(_answers(entry.decision)),
+        known=dict(_answers(entry.decision, blocks if record.spec.plans_on_blocks else None)),
         proposals=proposed_at(record.proposals, entry.sequence),
         blocks=blocks,
         decisions=index,
+        plans_on_blocks=record.spec.plans_on_blocks,
     )
 
 
-def _answers(decision: Decision) -> Iterator[tuple[Query, SolveResult]]:
-    """The answers from which the executed subgoals were made."""
+def _answers(decision: Decision, blocks: Blocks | None) -> Iterator[tuple[Query, SolveResult]]:
+    """The answers from which the executed subgoals were made; None for no blocks in queries."""
     if decision.chosen is None or decision.chosen >= len(decision.candidates):
         return
     status = decision.candidates[decision.chosen].status
@@ -42,7 +43,7 @@ def _answers(decision: Decision) -> Iterator[tuple[Query, SolveResult]]:
     for subgoal in decision.subgoals:
         plan, solved = subgoal.placements, status is SolveStatus.SOLVED
         yield (
-            Query(built, subgoal.target),
+            Query(built, subgoal.target, blocks or ()),
             SolveResult(
                 status=status,
                 placements=plan if solved else (),
@@ -53,6 +54,7 @@ def _answers(decision: Decision) -> Iterator[tuple[Query, SolveResult]]:
             ),
         )
         built = subgoal.target
+        blocks = None if blocks is None else (*blocks, *plan)
 
 
 def wrong_decision(record: TrialRecord, index: int) -> Iterator[str]:
@@ -129,10 +131,7 @@ def _wrong_subgoals(record: TrialRecord, decision: Decision, chains: list[Chain]
         return
     strategy = record.spec.strategy
     executed = strategy.subgoals_of(chains[decision.chosen])
-    expected = [
-        (region, query.target)
-        for region, query in zip(executed, queries_along(executed, decision.built), strict=True)
-    ]
+    expected = [*zip(executed, targets_along(executed, decision.built), strict=True)]
     if [(one.region, one.target) for one in decision.subgoals] != expected:
         yield 'the subgoals differ from those of the chosen candidate'
         return

@@ -34,6 +34,7 @@ from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.view.captions import shortlist
 from blocks_planning.view.scene import Scene, first_scene, scene_after
+from blocks_planning.worlds.observation import standing
 
 MOST_PAST = 500
 """Number of finished trials that can be replayed; the oldest are dropped."""
@@ -218,10 +219,12 @@ def _decides(session: Session, proposal: Proposal, built: Mask) -> bool:
 
 def answer_to(session: Session, proposal: Proposal, built: Mask) -> SolveResult | None:
     """The search result for a proposal that was made in a state; None if there is none yet."""
-    if session.scene is None:
+    scene, state = session.scene, session.state
+    if scene is None or state is None:
         return None
-    task = session.scene.task
-    return session.answers.get(Query(built, target_of(task, built, proposal.region)))
+    target = target_of(scene.task, built, proposal.region)
+    blocks = standing(state.observations[: proposal.sequence + 1])
+    return session.answers.get(scene.spec.query(built, target, blocks))
 
 
 def _is_executing(scene: Scene, state: WorldState) -> bool:

@@ -16,6 +16,7 @@ from blocks_planning.ros.wire.conversions.fields import MOST_QUERIES, bounded, c
 from blocks_planning.search.result import SolveResult, SolveStatus
 from blocks_planning.subgoals.decision import Query
 from blocks_planning.trials.messages import PlanMade, SearchAnswer, SearchRequest
+from blocks_planning.worlds.observation import mask_of
 
 _SOLVE_REASONS = {
     SolveStatus.SOLVED: 'the placements fill the target',
@@ -29,7 +30,9 @@ SOLVE_STATUSES = [status.value for status in _SOLVE_REASONS]
 def query_to_ros(board: Board, query: Query) -> ros.Query:
     """See :class:`Query`."""
     return ros.Query(
-        built=grid_to_ros(board, query.built), target=grid_to_ros(board, query.target)
+        built=grid_to_ros(board, query.built),
+        target=grid_to_ros(board, query.target),
+        blocks=blocks_to_ros(query.blocks),
     )
 
 
@@ -39,7 +42,10 @@ def query_from_ros(board: Board, message: ros.Query, field: str) -> Query:
     target = mask_on(board, message.target, f'{field}.target')
     if built & ~target:
         raise refuse(f'{field}.target', 'less', 'a target that contains what is built')
-    return Query(built, target)
+    blocks = blocks_from_ros(board, message.blocks, f'{field}.blocks')
+    if blocks and mask_of(board, blocks) != built:
+        raise refuse(f'{field}.blocks', len(blocks), 'blocks that fill what is built, or none')
+    return Query(built, target, blocks)
 
 
 def request_to_ros(board: Board, message: SearchRequest) -> ros.SearchRequest:
