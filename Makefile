@@ -67,7 +67,7 @@ test: setup  ## Run the tests (ARGS='-k word' for some, JOBS=4 for more processe
 	$(BIN)/python test/compile_kernels.py
 	$(BIN)/pytest -n $(JOBS) $(ARGS)
 
-parity: setup  ## Compare 391 trials through the graph with the same in one process
+parity: setup  ## Compare 388 trials through the graph with the same in one process
 	$(BIN)/pytest -n $(JOBS) -m '' test/parity $(ARGS)
 
 long: setup  ## Run the tests that take long (ARGS='-k word' for some)

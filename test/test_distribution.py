@@ -38,6 +38,7 @@ def distributions(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / 'dist'
 
 
+@pytest.mark.long
 def test_sdist_holds_what_builds_the_package(distributions: Path) -> None:
     [path] = distributions.glob('*.tar.gz')
     with tarfile.open(path) as archive:
@@ -45,6 +46,7 @@ def test_sdist_holds_what_builds_the_package(distributions: Path) -> None:
     assert files_of(*FOLDERS) | set(NEEDED) | {'LICENSE'} <= there
 
 
+@pytest.mark.long
 def test_wheel_built_from_it_holds_the_package_and_its_data(distributions: Path) -> None:
     [path] = distributions.glob('*.whl')
     there = set(zipfile.ZipFile(path).namelist())
@@ -54,6 +56,7 @@ def test_wheel_built_from_it_holds_the_package_and_its_data(distributions: Path)
     assert {f'{data}/data/share/{PACKAGE}/{name}' for name in shared} <= there
 
 
+@pytest.mark.long
 def test_index_would_take_them(distributions: Path) -> None:
     paths = sorted(str(path) for path in distributions.iterdir())
     assert len(paths) == 2
@@ -63,6 +66,7 @@ def test_index_would_take_them(distributions: Path) -> None:
     assert done.stdout.count('PASSED') == 2
 
 
+@pytest.mark.long
 def test_installed_wheel_finds_its_data_anywhere(distributions: Path, tmp_path: Path) -> None:
     [path] = distributions.glob('*.whl')
     target = tmp_path / 'installed here'

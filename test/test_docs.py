@@ -37,6 +37,7 @@ def run(command: list[str], folder: Path) -> str:
     return done.stdout
 
 
+@pytest.mark.long
 def test_own_towers_can_be_followed(tmp_path: Path) -> None:
     program = []
     for listing in listings(ROOT / 'docs' / 'own_towers.md'):
@@ -63,6 +64,7 @@ def test_page_about_python_can_be_followed(tmp_path: Path) -> None:
     assert (tmp_path / 'arch.gif').stat().st_size > 1000
 
 
+@pytest.mark.long
 def test_notebook_can_be_run(tmp_path: Path) -> None:
     notebook = json.loads((ROOT / 'docs' / 'scoping.ipynb').read_text(encoding='utf-8'))
     cells = [''.join(cell['source']) for cell in notebook['cells'] if cell['cell_type'] == 'code']

@@ -179,6 +179,7 @@ def test_what_is_hidden_cannot_be_imported(tmp_path: Path, words: list[str]) -> 
     assert 'ModuleNotFoundError' in done.stderr
 
 
+@pytest.mark.long
 def test_towers_are_solved_verified_and_drawn(tmp_path: Path) -> None:
     code = f"""
 import contextlib

@@ -235,7 +235,11 @@ def test_a_set_that_is_none_is_refused(checkout: Path) -> None:
     assert not (checkout / '.venv').exists()
 
 
-@pytest.mark.parametrize('path', MESSAGES, ids=str)
+@pytest.mark.parametrize(
+    'path',
+    [MESSAGES[0], *(pytest.param(path, marks=pytest.mark.long) for path in MESSAGES[1:])],
+    ids=str,
+)
 def test_messages_are_built_when_a_file_of_them_has_changed(checkout: Path, path: Path) -> None:
     installed(checkout)
     with (checkout / path).open('a') as file:

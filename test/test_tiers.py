@@ -131,9 +131,14 @@ def test_missing_module_names_its_extra_and_what_to_do() -> None:
     ('module', 'name', 'missing'),
     [
         ('view.picture', 'figures', 'matplotlib'),
-        ('experiments.store', 'experiments', 'pyarrow'),
-        ('analysis.trials', 'experiments', 'pandas'),
-        ('view.web.server', 'page', 'aiohttp'),
+        *(
+            pytest.param(*case, marks=pytest.mark.long)
+            for case in (
+                ('experiments.store', 'experiments', 'pyarrow'),
+                ('analysis.trials', 'experiments', 'pandas'),
+                ('view.web.server', 'page', 'aiohttp'),
+            )
+        ),
     ],
 )
 def test_part_that_is_not_installed_says_so(module: str, name: str, missing: str) -> None:

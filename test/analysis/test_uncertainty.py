@@ -78,6 +78,7 @@ def test_optimum_is_one_where_nothing_slips(results: Any) -> None:
     assert 0 < chancy['mean'] < 1
 
 
+@pytest.mark.long
 def test_started_again_it_says_the_same(folder: Path, results: Any) -> None:
     said = run(folder)
     assert json.loads((folder / 'results.json').read_text()) == results

@@ -100,6 +100,7 @@ def test_exact_policy(folder: Path) -> None:
     assert f'succeeds with probability {second["success"]:.6g}' in said
 
 
+@pytest.mark.long
 def test_exact_policy_where_blocks_slip(folder: Path) -> None:
     (folder / 'towers.txt').write_text('tower a\n.##.\n.##.\n\ntower b\n.###.\n.###.\n')
     words = ['exact-policy', 'towers.txt', '--slip', '0', '--slip', '0.2']

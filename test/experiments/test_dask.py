@@ -32,6 +32,7 @@ def cluster(tmp_path: Path) -> Iterator[Any]:
         yield cluster
 
 
+@pytest.mark.long
 def test_same_tables_though_a_worker_is_killed(tmp_path: Path, cluster: Any) -> None:
     pids = [worker.pid for worker in cluster.workers.values()]
     assert len(set(pids)) == 2

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import pytest
 from aiohttp import ClientSession, CookieJar
 from studies import ARCH, STUDY, TOKEN
 
@@ -93,6 +94,7 @@ async def take_part(url: str, done: int, kill: tuple[int, Any]) -> int:
     return len(SCRIPT)
 
 
+@pytest.mark.long
 def test_nothing_is_lost_when_the_server_is_killed(tmp_path: Path) -> None:
     (tmp_path / 'arch.txt').write_text(ARCH)
     (tmp_path / 'study.yaml').write_text(STUDY.format(towers=tmp_path / 'arch.txt'))

@@ -62,6 +62,7 @@ def test_graph_has_sockets_on_this_machine_only(tmp_path: Path) -> None:
     assert [one for one in bound if not one[2].startswith('127.') and one[2] != '::1'] == []
 
 
+@pytest.mark.long
 def test_graph_leaves_files_in_its_folder_only(tmp_path: Path) -> None:
     """Names come from scripts and messages; nothing is written beside the folder."""
     towers = tmp_path / 'towers.txt'

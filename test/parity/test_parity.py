@@ -70,9 +70,9 @@ _SMALL: list[dict[str, Any]] = [
         'budget': 500,
         'seeds': 1,
     },
-    {  # 6
+    {  # 3
         'stimuli': ['cogsci2021/5'],
-        'searches': [{'name': 'stable_bfs', 'depth': 1}, {'name': 'stable_random'}],
+        'searches': [{'name': 'stable_bfs', 'depth': 1}],
         'strategies': [
             {'name': 'none'},
             {'name': 'scoping', 'commit': 'action'},

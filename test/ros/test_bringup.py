@@ -70,6 +70,7 @@ def test_script_runs_to_its_end_and_is_not_run_again(tmp_path: Path) -> None:
     assert 'trial 1 of 3' not in again.stderr
 
 
+@pytest.mark.long
 def test_markers_are_shown_and_recorded_when_asked_for(graph: Graph, tmp_path: Path) -> None:
     """They reach who listens on the domain, and a bag from which the trials can be rebuilt."""
     script, out, bag = write_script(tmp_path, seeds=3), tmp_path / 'out', tmp_path / 'bag'
@@ -92,6 +93,7 @@ def test_markers_are_shown_and_recorded_when_asked_for(graph: Graph, tmp_path: P
     assert {one.ns for one in shown[-1].markers} >= {'ground', 'silhouette', 'blocks', 'text'}
 
 
+@pytest.mark.long
 def test_many_trials_are_drawn_only_when_asked_for_and_only_the_first(tmp_path: Path) -> None:
     script, out = write_script(tmp_path, seeds=17), tmp_path / 'out'
     done = run_graph(script, '--out', out)
@@ -168,7 +170,10 @@ def test_goes_on_where_it_was_interrupted(tmp_path: Path) -> None:
     assert after == local_lines(script)
 
 
-@pytest.mark.parametrize('name', sorted(NODES))
+@pytest.mark.parametrize(
+    'name',
+    ['world', *(pytest.param(name, marks=pytest.mark.long) for name in sorted(NODES - {'world'}))],
+)
 def test_node_that_dies_comes_back_and_nothing_is_lost(name: str, tmp_path: Path) -> None:
     script, out = write_script(tmp_path, seeds=9), tmp_path / 'out'
     with bring_up(script, '--out', out) as process:
@@ -194,6 +199,7 @@ def test_nodes_end_when_their_bring_up_is_killed(tmp_path: Path) -> None:
     read_records(out / 'trials.jsonl')
 
 
+@pytest.mark.long
 def test_two_at_once_do_not_hear_each_other(tmp_path: Path) -> None:
     folders = [tmp_path / 'one', tmp_path / 'two']
     scripts = []
@@ -210,6 +216,7 @@ def test_two_at_once_do_not_hear_each_other(tmp_path: Path) -> None:
         assert record_lines(folder) == local_lines(script)
 
 
+@pytest.mark.long
 def test_namespace_and_domain_are_where_it_was_told(graph: Graph, tmp_path: Path) -> None:
     """A peer in that namespace of that domain hears every trial."""
     script, out = write_script(tmp_path, seeds=2), tmp_path / 'out'
@@ -263,6 +270,7 @@ def os_domain() -> int:
     return int(os.environ['ROS_DOMAIN_ID'])
 
 
+@pytest.mark.long
 def test_watcher_counts_what_it_saw(tmp_path: Path) -> None:
     """Progress is said for every trial, with its outcome."""
     script = write_script(tmp_path, seeds=2, strategies=[{'name': 'none'}])

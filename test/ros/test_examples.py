@@ -50,7 +50,11 @@ def process(
     assert running.returncode == 0
 
 
-@pytest.mark.parametrize('examples', [*([name] for name in EXAMPLES), [*EXAMPLES]], ids='+'.join)
+@pytest.mark.parametrize(
+    'examples',
+    [[*EXAMPLES], *(pytest.param([name], marks=pytest.mark.long) for name in EXAMPLES)],
+    ids='+'.join,
+)
 def test_example_takes_the_place_of_a_node(examples: list[str], tmp_path: Path) -> None:
     nodes = {name: name for name in ('world', 'subgoal_selector', 'action_searcher')}
     commands = {name: ['-m', NODES, name] for name in nodes}

@@ -76,6 +76,7 @@ def build(page: Page, tower: str, *areas: tuple[tuple[int, int], tuple[int, int]
             expect(page.locator('#said li').nth(number - 1)).to_contain_text(': built')
 
 
+@pytest.mark.long
 @needs_chromium
 def test_a_person_scopes_two_towers_in_a_browser(tmp_path: Path) -> None:
     from playwright.sync_api import expect
@@ -123,6 +124,7 @@ def test_page_shows_a_script_and_ends_with_it(tmp_path: Path) -> None:
     assert not is_served(urls[0])
 
 
+@pytest.mark.long
 def test_page_that_dies_is_served_again_at_the_same_address(tmp_path: Path) -> None:
     script = write_script(tmp_path, seeds=60)
     out = tmp_path / 'out'

@@ -121,14 +121,19 @@ def test_parameters_of_a_wrong_type_or_value_are_refused(
     ('name', 'parameter', 'said'),
     [
         ('world', 'remind_period_s:=0.0', 'parameter remind_period_s must be'),
-        ('subgoal_selector', 'colour:=red', "has no parameter 'colour'"),
-        ('action_searcher', 'workers:=many', 'parameter workers must be'),
-        ('trial_orchestrator', 'script:=nowhere.yaml', 'nowhere.yaml: cannot be read'),
-        ('bag_recorder', 'flush_period_s:=1e9', 'parameter flush_period_s must be'),
-        ('marker_publisher', 'cell_size:=0.0', 'parameter cell_size must be'),
-        ('marker_publisher', "frame_id:=''", 'parameter frame_id must be a name'),
         ('trial_view', 'host:=nowhere.invalid', 'cannot be served at nowhere.invalid:0: '),
-        ('trial_view', 'token:=short', 'token must be 16 or more letters'),
+        *(
+            pytest.param(*case, marks=pytest.mark.long)
+            for case in (
+                ('subgoal_selector', 'colour:=red', "has no parameter 'colour'"),
+                ('action_searcher', 'workers:=many', 'parameter workers must be'),
+                ('trial_orchestrator', 'script:=nowhere.yaml', 'nowhere.yaml: cannot be read'),
+                ('bag_recorder', 'flush_period_s:=1e9', 'parameter flush_period_s must be'),
+                ('marker_publisher', 'cell_size:=0.0', 'parameter cell_size must be'),
+                ('marker_publisher', "frame_id:=''", 'parameter frame_id must be a name'),
+                ('trial_view', 'token:=short', 'token must be 16 or more letters'),
+            )
+        ),
     ],
 )
 def test_process_with_bad_parameters_ends_with_one_line(

@@ -61,6 +61,7 @@ def installed(tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.mark.long
 def test_graph_runs_records_and_verifies_them(
     installed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -50,6 +50,7 @@ def test_name_is_claimed_once_in_a_domain() -> None:
         claim.close()
 
 
+@pytest.mark.long
 def test_second_process_of_a_node_is_refused(graph: Graph) -> None:
     command = [sys.executable, '-m', NODES, 'subgoal_selector', '--ros-args']
     command += ['-r', f'__ns:={graph.namespace}']
@@ -78,6 +79,7 @@ def test_who_is_busy_did_not_stand_still(passed_s: float, worked_s: float, stopp
     assert stood_still(passed_s, worked_s) == stopped
 
 
+@pytest.mark.long
 def test_node_that_was_stopped_is_there_again(graph: Graph, tmp_path: Path) -> None:
     """After all others had taken it for dead; and it says what holds."""
     peer = graph.add(Peer, TRIAL_SPEC, (TRIAL, STATE), (SEARCH_REQUEST,))

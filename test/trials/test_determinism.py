@@ -67,13 +67,14 @@ def test_threads_play_no_part() -> None:
         assert list(pool.map(_line, SPECS * 3)) == LINES * 3
 
 
+@pytest.mark.long
 def test_processes_play_no_part() -> None:
     context = multiprocessing.get_context('spawn')
     with ProcessPoolExecutor(2, mp_context=context) as pool:
         assert [found.to_line() for found in pool.map(run_trial, SPECS)] == LINES
 
 
-@pytest.mark.parametrize('hash_seed', ['1', '4242'])
+@pytest.mark.parametrize('hash_seed', ['1', pytest.param('4242', marks=pytest.mark.long)])
 def test_interpreter_plays_no_part(hash_seed: str) -> None:
     done = subprocess.run(
         [sys.executable, '-c', FRESH],

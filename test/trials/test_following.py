@@ -57,8 +57,10 @@ def test_record_is_that_of_the_parts(task: Task, search: object, seed: int, budg
         assert follow(spec, answers).to_json() == run_trial(spec).to_json()
 
 
-@pytest.mark.parametrize('tower', ['12', '13'])
-@pytest.mark.parametrize('search', [BreadthFirst(2), AStar(256)])
+@pytest.mark.parametrize('tower', ['12', pytest.param('13', marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    'search', [BreadthFirst(2), pytest.param(AStar(256), marks=pytest.mark.long)]
+)
 def test_record_of_a_tower_of_the_paper(tower: str, search: object) -> None:
     [stimulus] = find_stimuli(f'cogsci2021/{tower}')
     task = Task(stimulus.board, stimulus.silhouette, PAPER_LIBRARY)

@@ -110,7 +110,7 @@ def read_or_refused(path: Path) -> list[TrialRecord]:
 @given(_damaged())
 @example(remade(changed((*OBSERVATION, 'landed', 0, 0), 0)))
 @example(remade(changed((*SUBGOAL, 'placements', 0, 0), 0)))
-@settings(max_examples=1000)
+@settings(max_examples=500)
 def test_any_damage_is_refused_or_held_against_the_rules(
     tmp_path_factory: pytest.TempPathFactory, data: dict[str, Any]
 ) -> None:

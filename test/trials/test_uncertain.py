@@ -79,7 +79,9 @@ def test_records_of_small_towers_hold(strategy: Strategy, world: World) -> None:
             holds_everywhere(record)
 
 
-@pytest.mark.parametrize('tower', ['1', '7', '13'])
+@pytest.mark.parametrize(
+    'tower', ['1', *(pytest.param(tower, marks=pytest.mark.long) for tower in ('7', '13'))]
+)
 def test_records_of_towers_of_the_paper_hold(tower: str) -> None:
     [stimulus] = find_stimuli(f'cogsci2021/{tower}')
     paper = Task(stimulus.board, stimulus.silhouette, PAPER_LIBRARY)
