@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,13 +15,13 @@ from source_imports import ROOT
 from studies import TOKEN, Served, served
 from takers import Finger, Keyboard, Participant, sees, stage_of
 
+from blocks_planning.cli import commands
 from blocks_planning.fitting.points import points_of
 from blocks_planning.study.codebook import TABLES
 from blocks_planning.study.desk import Desk
 from blocks_planning.study.export import export_study
 from blocks_planning.study.spec import read_study
 from blocks_planning.trials.reading import read_records
-from blocks_planning.trials.verify import contradictions, differs_from_rerun
 from blocks_planning.view.study.server import StudyServer
 from blocks_planning.view.web.guards import Address
 
@@ -147,16 +148,28 @@ def compare(folder: Path, out: Path) -> None:
     assert people == [(code, 'finished') for code in ('P01', 'P02', 'P03')]
     assert [row['visits'] for row in tables['participants']] == ['1', '1', '2']
     paths = [*out.glob('records/*'), *out.glob('practice/*')]
-    records = [record for path in paths for record in read_records(path)]
-    assert len(records) == len(tables['trials']) == 18
-    for record in records:
-        assert list(contradictions(record)) + list(differs_from_rerun(record)) == []
-    assert sum(record.blocks for record in records) == len(tables['placements'])
-    proposed = sum(len(record.proposals) for record in records)
-    assert proposed == len(tables['proposals'])
-    points = points_of(records)
-    assert len(points) == sum(row['kind'] == 'build' for row in tables['proposals'])
-    assert {point.session for point in points} == {'P01', 'P02', 'P03'}
+    run('verify', '--rerun', *map(str, paths))
+    records = {path: read_records(path) for path in paths}
+    every = [record for path in paths for record in records[path]]
+    assert len(every) == len(tables['trials']) == 18
+    assert sum(record.blocks for record in every) == len(tables['placements'])
+    assert sum(len(record.proposals) for record in every) == len(tables['proposals'])
+    assert len(points_of(every)) == sum(row['kind'] == 'build' for row in tables['proposals'])
+    scoped = out / 'records' / 'scoping.jsonl'
+    run('fit', str(scoped), '--model', 'rows', '--model', 'random', '--out', str(out / 'fitted'))
+    with (out / 'fitted' / 'fits.csv').open(newline='') as file:
+        fits = list(csv.DictReader(file))
+    chosen = Counter(point.session for point in points_of(records[scoped]))
+    assert {row['session']: int(row['choices']) for row in fits} == {
+        **{code: chosen[code] for code in ('P01', 'P02', 'P03')},
+        'all': chosen.total(),
+    }
+    assert min(chosen.values()) > 0
+
+
+def run(*words: str) -> None:
+    """Run a command; it must not complain."""
+    assert not commands.main(list(words), standalone_mode=False)
 
 
 # A smaller study
