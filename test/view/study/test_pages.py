@@ -166,7 +166,17 @@ def compare(folder: Path, out: Path) -> None:
     assert sum(len(record.proposals) for record in every) == len(tables['proposals'])
     assert len(points_of(every)) == sum(row['kind'] == 'build' for row in tables['proposals'])
     scoped = out / 'records' / 'scoping.jsonl'
-    run('fit', str(scoped), '--model', 'rows', '--model', 'random', '--out', str(out / 'fitted'))
+    run(
+        'fit',
+        str(scoped),
+        '--model',
+        'rows',
+        '--model',
+        'random',
+        '--no-intervals',
+        '--out',
+        str(out / 'fitted'),
+    )
     with (out / 'fitted' / 'fits.csv').open(newline='') as file:
         fits = list(csv.DictReader(file))
     chosen = Counter(point.session for point in points_of(records[scoped]))
@@ -220,6 +230,17 @@ def test_a_reload_goes_on_where_it_was(small: Served, opened: Opener) -> None:
     page.reload()
     assert stage_of(page) == 'scoping'
     assert page.locator('.block').count() == 2
+
+
+def test_what_is_drawn_stays_when_the_pointer_leaves(small: Served, opened: Opener) -> None:
+    page = opened(small.participant)
+    someone = Participant(page)
+    while stage_of(page) != 'scoping':
+        someone.go_on()
+    page.mouse.click(*point_of(page, -1, 1))
+    drawn = page.locator('.draw-edge').get_attribute('d')
+    page.get_by_role('button', name='Build this').hover()
+    assert page.locator('.draw-edge').get_attribute('d') == drawn != ''
 
 
 def test_a_lost_server_is_told_and_found_again(tmp_path: Path, opened: Opener) -> None:
