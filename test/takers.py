@@ -16,7 +16,7 @@ def stage_of(page: Page) -> str:
     return str(
         page.evaluate("""async () => {
             const shown = (id) => document.getElementById(id)?.checkVisibility();
-            const stages = {agree: 'consent', 'go-on': 'text', scoping: 'scoping',
+            const stages = {agree: 'consent', 'go-on': 'text', marking: 'marking', scoping: 'scoping',
                 building: 'building', next: 'ended'};
             for (;;) {
                 for (const [id, stage] of Object.entries(stages)) if (shown(id)) return stage;
@@ -51,13 +51,16 @@ class Participant:
             self.scope()
         elif stage == 'building':
             self.build()
+        elif stage == 'marking':
+            self.mark()
+            self.leave_step()
         elif stage != 'over':
             self.leave_step()
         return stage
 
     def leave_step(self) -> None:
         """Press what leads to the next step, and wait for it."""
-        buttons = {'consent': 'I agree', 'text': '#go-on', 'ended': '#next'}
+        buttons = {'consent': 'I agree', 'text': '#go-on', 'marking': '#next', 'ended': '#next'}
         bar = self.page.locator('#progress-bar')
         step = bar.get_attribute('value')
         button = buttons[stage_of(self.page)]
@@ -71,6 +74,23 @@ class Participant:
 
     def press(self, name: str) -> None:
         self.page.get_by_role('button', name=name, exact=True).click()
+
+    def mark(self) -> None:
+        """The lower rows, the whole by mistake, the same taken back, then the left half, and the rest."""
+        self.page.mouse.click(*point_of(self.page, -1, 1))
+        self.press('This is a part')
+        sees(self.page, '#preview', 'left that')
+        drag(self.page, (0, 0), (7, 7))
+        self.press('This is a part')
+        sees(self.page, '#answer', 'Every cell')
+        self.press('Take the last part back')
+        sees(self.page, '#preview', 'left that')
+        drag(self.page, (0, 0), (3, 7))
+        self.press('This is a part')
+        sees(self.page, '#preview', 'left that')
+        drag(self.page, (0, 0), (7, 7))
+        self.press('This is a part')
+        sees(self.page, '#answer', 'Every cell')
 
     def scope(self) -> None:
         """Two rows, then everything."""
@@ -138,6 +158,12 @@ class Keyboard(Participant):
         self.tab_to(self.page.locator('#board'))
         for key in keys.split():
             self.page.keyboard.press(key)
+
+    def mark(self) -> None:
+        self.keys('ArrowDown ' * 7 + 'r Enter')
+        sees(self.page, '#preview', 'left that')
+        self.keys('ArrowUp ' * 7 + 'r Enter')
+        sees(self.page, '#answer', 'Every cell')
 
     def scope(self) -> None:
         self.keys('ArrowUp r')

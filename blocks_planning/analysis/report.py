@@ -8,6 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from blocks_planning.analysis import formats
+from blocks_planning.analysis.behaviour.section import (
+    behaviour_figures,
+    compare_behaviour,
+    section_content,
+)
 from blocks_planning.analysis.comparing import compare, count_verdicts, ratio_text
 from blocks_planning.analysis.paper_file import the_paper
 from blocks_planning.analysis.people import compare_people
@@ -64,7 +69,8 @@ def write_report(
         add_exact(results['table1'], exact)
         results['claims'] = compared[name]
         results['people'] = compare_people(trials, name)
-    figures = _figures(presets, trials, read_decisions(sweep))
+    behaviour = compare_behaviour(sweep, MAIN)
+    figures = _figures(presets, trials, read_decisions(sweep)) | behaviour_figures(behaviour)
     paths = {name: save_figure(fig, folder / 'figures', name) for name, fig in figures.items()}
     switched = switch_rows(trials)
     written = {
@@ -74,6 +80,7 @@ def write_report(
         'exact': exact,
         'sizes': sizes,
         'switches': switched,
+        'behaviour': behaviour,
     }
     text = json.dumps(written, indent=1, allow_nan=False)
     (folder / 'results.json').write_text(text + '\n', encoding='utf-8')
@@ -88,6 +95,7 @@ def write_report(
         switched=switched,
         sizes=sizes,
         sample=_sample(trials),
+        behaviour=section_content(behaviour),
         exact_budget=exact[0]['budget'] if exact else 0,
     )
     (folder / 'report.html').write_text(html, encoding='utf-8')

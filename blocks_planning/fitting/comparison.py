@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from blocks_planning.errors import ConfigurationError
 from blocks_planning.fitting.choiceset import ChoiceSet, choice_set
 from blocks_planning.fitting.estimation import Fit, fit, log_likelihood, profile_interval
 from blocks_planning.fitting.models import Model
-from blocks_planning.fitting.options import OneAhead, OptionMaker, Solves
+from blocks_planning.fitting.options import Ahead, OptionMaker, Solves
 from blocks_planning.fitting.points import ChoicePoint
 
 POOLED = 'all'
@@ -23,7 +22,7 @@ class Makers:
     """The option makers of models, made once for each family and horizon."""
 
     def __init__(self, own: Mapping[tuple[str, int], OptionMaker] | None = None) -> None:
-        """Make options one subgoal ahead, with shared solves.
+        """Make options with shared solves.
 
         Args:
             own: makers by family and horizon, used before those made here.
@@ -32,19 +31,10 @@ class Makers:
         self._solves = Solves()
 
     def maker(self, model: Model) -> OptionMaker:
-        """The maker of a model's options; the random model takes those of ``rows``.
-
-        Raises:
-            ConfigurationError: for a horizon without an option maker.
-        """
+        """The maker of a model's options; the random model takes those of ``rows``."""
         key = model.regions or 'rows', model.horizon
         if key not in self._made:
-            if model.horizon != 1:
-                raise ConfigurationError(
-                    f'model {model.name}: no option maker for horizon {model.horizon} is registered; '
-                    'use horizon 1'
-                )
-            self._made[key] = OneAhead(key[0], self._solves)
+            self._made[key] = Ahead(key[0], self._solves, key[1])
         return self._made[key]
 
     def choice_sets(

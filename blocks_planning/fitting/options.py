@@ -1,12 +1,13 @@
 """The options of a state and their values: the interface for planners.
 
 A model of choice needs, for every option, the cells that it names and the sequences of subgoals
-that begin with it, each with its cells r and its cost c. :class:`OneAhead` gives them for a region
-family one subgoal ahead. A planner that looks further ahead needs another :class:`OptionMaker`.
+that begin with it, each with its cells r and its cost c. :class:`Ahead` gives them for a region
+family, one or more subgoals ahead.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -39,7 +40,8 @@ class Option:
 
     Attributes:
         cells: that it adds.
-        sequences: solvable ones that begin with it; empty if the region cannot be built.
+        sequences: solvable ones that begin with it; empty if there are none, as when the region
+            cannot be built.
         placements: that fill it.
     """
 
@@ -96,38 +98,68 @@ def _is_impossible(problem: Problem) -> bool:
         return False
 
 
-class OneAhead:
-    """The regions of a family, one subgoal ahead: the paper's scoping planner."""
+class Ahead:
+    """The regions of a family with the sequences that a scoping planner weighs.
 
-    def __init__(self, regions: str, solves: Solves) -> None:
+    Of the sequences that begin with an option, those are kept that can be the best one for some
+    lambda: each of fewer cells has a lower cost.
+    """
+
+    def __init__(self, regions: str, solves: Solves, horizon: int = 1) -> None:
         """Use the regions of a family.
 
         Args:
             regions: name of the family.
             solves: shared with others.
+            horizon: number of subgoals of a sequence; fewer if it completes the silhouette.
 
         Raises:
             ConfigurationError: for an unknown family.
         """
         self._family = find_family(regions)
         self._solves = solves
-        self._made: dict[tuple[Task, Mask, Asking], tuple[Option, ...]] = {}
+        self._horizon = horizon
+        self._made: dict[tuple[Task, Mask, Asking, int], tuple[Option, ...]] = {}
 
     def options(self, task: Task, built: Mask, asking: Asking) -> tuple[Option, ...]:
         """See :class:`OptionMaker`."""
-        key = task, built, asking
+        return self._options(task, built, asking, self._horizon)
+
+    def _options(self, task: Task, built: Mask, asking: Asking, ahead: int) -> tuple[Option, ...]:
+        key = task, built, asking, ahead
         if key not in self._made:
-            self._made[key] = tuple(
-                self._option(task, built, cells, asking) for cells in self._family(task, built)
-            )
+            regions = self._family(task, built)
+            self._made[key] = tuple(self._option(*key, cells) for cells in regions)
         return self._made[key]
 
-    def _option(self, task: Task, built: Mask, cells: Mask, asking: Asking) -> Option:
-        result = self._solves.solved(task, built, built | cells, asking)
+    def _option(self, task: Task, built: Mask, asking: Asking, ahead: int, cells: Mask) -> Option:
+        target = built | cells
+        result = self._solves.solved(task, built, target, asking)
         if result is None:
             return Option(cells, ())
-        sequence = Sequence(area(cells), result.planning_cost)
-        return Option(cells, (sequence,), result.placements)
+        first = Sequence(area(cells), result.planning_cost)
+        if ahead == 1 or not task.silhouette & ~target:
+            return Option(cells, (first,), result.placements)
+        following = self._options(task, target, asking, ahead - 1)
+        sequences = (
+            Sequence(first.cells + one.cells, first.cost + one.cost)
+            for option in following
+            for one in option.sequences
+        )
+        return Option(cells, undominated(sequences), result.placements)
+
+
+def undominated(sequences: Iterable[Sequence]) -> tuple[Sequence, ...]:
+    """Those to which no other is at least equal in both cells and cost; most cells first.
+
+    >>> undominated([Sequence(2, 9), Sequence(4, 9), Sequence(2, 5), Sequence(1, 7)])
+    (Sequence(cells=4, cost=9), Sequence(cells=2, cost=5))
+    """
+    found: list[Sequence] = []
+    for one in sorted(sequences, key=lambda one: (-one.cells, one.cost)):
+        if not found or one.cost < found[-1].cost:
+            found.append(one)
+    return tuple(found)
 
 
 def drawable(task: Task, built: Mask) -> int:

@@ -1,9 +1,14 @@
-"""Recovery of parameters and models from simulated choices."""
+"""Recovery of parameters and models from simulated choices.
+
+A session says where a simulated participant chooses: in the states of some records, with
+``partial(choose_again, points)``, or on towers that it rebuilds, with ``partial(roll_out, name,
+towers, asking)``; see :mod:`.simulation`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -11,10 +16,12 @@ from blocks_planning.fitting.comparison import Makers
 from blocks_planning.fitting.estimation import fit
 from blocks_planning.fitting.models import Model
 from blocks_planning.fitting.points import ChoicePoint
-from blocks_planning.fitting.simulation import Chooser, choose_again
+from blocks_planning.fitting.simulation import Chooser
 
 RANGES = {'lambda': (5e-4, 5e-3), 'temperature': (0.5, 2.0), 'lapse': (0.01, 0.1)}
 """Ranges of the parameters of simulated participants, drawn uniformly in their logarithm."""
+Session: TypeAlias = Callable[[Chooser], list[ChoicePoint]]
+"""The choices that a simulated participant makes."""
 Report = Callable[[int, int], None]
 
 
@@ -28,16 +35,16 @@ def draw_values(model: Model, rng: np.random.Generator) -> dict[str, float]:
 
 
 def recover_parameters(
-    sessions: Sequence[Sequence[ChoicePoint]],
+    sessions: Sequence[Session],
     model: Model,
     makers: Makers,
     seed: int,
     report: Report | None = None,
 ) -> list[dict[str, Any]]:
-    """Draw parameters for each session, simulate choices in its states, and fit these choices.
+    """Draw parameters for each session, simulate its choices, and fit these.
 
     Args:
-        sessions: the states of each simulated participant; the original choices have no effect.
+        sessions: of each simulated participant.
         model: that chooses and is fitted.
         makers: of options.
         seed: of all draws.
@@ -48,15 +55,15 @@ def recover_parameters(
         ``fitted`` and ``relative_error``, which is abs(fitted - true) / true.
     """
     rows = []
-    for number, points in enumerate(sessions):
+    for number, session in enumerate(sessions):
         rng = np.random.default_rng([seed, number])
         true = draw_values(model, rng)
-        chosen = choose_again(points, Chooser(model, true, makers.maker(model), rng))
+        chosen = session(Chooser(model, true, makers.maker(model), rng))
         found = fit(makers.choice_sets(chosen, [model])[model.name], model)
         rows += [
             {
                 'session': number,
-                'choices': len(points),
+                'choices': len(chosen),
                 'parameter': name,
                 'true': true[name],
                 'fitted': found.values[name],
@@ -70,13 +77,13 @@ def recover_parameters(
 
 
 def recover_models(
-    sessions: Sequence[Sequence[ChoicePoint]],
+    sessions: Sequence[Session],
     models: Sequence[Model],
     makers: Makers,
     seed: int,
     report: Report | None = None,
 ) -> list[dict[str, Any]]:
-    """Simulate choices of each model in the states of each session, and find the best model (BIC).
+    """Simulate the choices of each model in each session, and find the best model (BIC).
 
     Arguments as for :func:`recover_parameters`.
 
@@ -85,16 +92,16 @@ def recover_models(
     """
     rows = []
     for place, true in enumerate(models):
-        for number, points in enumerate(sessions):
+        for number, session in enumerate(sessions):
             rng = np.random.default_rng([seed, place, number])
-            chooser = Chooser(true, draw_values(true, rng), makers.maker(true), rng)
-            sets = makers.choice_sets(choose_again(points, chooser), models)
+            chosen = session(Chooser(true, draw_values(true, rng), makers.maker(true), rng))
+            sets = makers.choice_sets(chosen, models)
             scores = {model.name: fit(sets[model.name], model).bic for model in models}
             rows.append(
                 {
                     'model': true.name,
                     'session': number,
-                    'choices': len(points),
+                    'choices': len(chosen),
                     'winner': min(scores, key=lambda name: scores[name]),
                 }
             )

@@ -18,6 +18,9 @@ class Column(NamedTuple):
 
 _WHO = Column('participant', str, '', 'code of the participant')
 _STEP = Column('step', int, '', 'step of the participant, from 0; names a trial of a participant')
+_PHASE = Column('phase', str, '', 'practice or trial')
+_CONDITION = Column('condition', str, '', 'name of the condition')
+_TOWER = Column('tower', str, '', 'address of the silhouette')
 _SEQUENCE = Column('sequence', int, '', 'number of blocks placed earlier in this trial')
 _AT = Column('at', str, 'UTC', 'time of the event, on the wall clock')
 _STEADY = Column(
@@ -54,11 +57,11 @@ TABLES: Mapping[str, tuple[Column, ...]] = MappingProxyType(
         'trials': (
             _WHO,
             _STEP,
-            Column('phase', str, '', 'practice or trial'),
+            _PHASE,
             Column('number', int, '', 'number of the trial in its phase, from 1'),
-            Column('condition', str, '', 'name of the condition'),
+            _CONDITION,
             Column('mode', str, '', 'scoping or building'),
-            Column('tower', str, '', 'address of the silhouette'),
+            _TOWER,
             Column('seed', int, '', 'seed of the trial'),
             Column('time_limit_s', int, 's', 'time limit of the trial; 0: none'),
             Column('trial_id', str, '', 'id of the record in records/CONDITION.jsonl'),
@@ -102,6 +105,19 @@ TABLES: Mapping[str, tuple[Column, ...]] = MappingProxyType(
             Column('height', int, 'cells', 'of the block'),
             Column('column', int, '', 'of its lower left cell, from 0 at the left'),
             Column('row', int, '', 'of its lower left cell, from 0 at the ground'),
+        ),
+        'parts': (
+            _WHO,
+            Column('step', int, '', 'step of the participant, from 0; the trial is the next step'),
+            _PHASE,
+            _CONDITION,
+            _TOWER,
+            Column('part', int, '', 'number of the part in its silhouette, from 0'),
+            Column('region', str, 'mask', 'cells that were drawn, as a hexadecimal number'),
+            Column('cells', str, 'mask', 'cells of the part: those that belonged to no other yet'),
+            Column('thinking_s', float, 's', 'time from the part before to this one, on the page'),
+            _AT,
+            _STEADY,
         ),
         'pointer': (
             _WHO,

@@ -33,6 +33,10 @@ class EventKind(str, Enum):
     """The participant did not agree; the session is over."""
     WENT_ON = 'went_on'
     """The participant went on to the next step."""
+    MARKED = 'marked'
+    """A part was marked (phase, condition, tower, region, cells: its own, thinking_s)."""
+    UNMARKED = 'unmarked'
+    """The last part was taken back."""
     BEGAN = 'began'
     """A trial began (the keys of :meth:`.Trial.to_json`)."""
     PROPOSED = 'proposed'

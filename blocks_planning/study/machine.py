@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from blocks_planning.board.geometry import Mask
 from blocks_planning.study.events import Event, EventKind, proposal_of
 from blocks_planning.study.plan import Step, StepKind
 from blocks_planning.subgoals.drawn import Refused
@@ -35,6 +36,7 @@ class State:
         is_closed: whether the experimenter closed the session.
         is_present: whether the participant's page is connected.
         is_begun: whether this step's trial has begun.
+        parts: cells of each part that was marked in this step.
         proposals: in this trial.
         is_timed_out: whether the time limit of this step's trial was reached.
         is_ended: whether this step's trial has ended.
@@ -49,12 +51,18 @@ class State:
     is_closed: bool = False
     is_present: bool = False
     is_begun: bool = False
+    parts: tuple[Mask, ...] = ()
     proposals: tuple[Proposal, ...] = ()
     is_timed_out: bool = False
     is_ended: bool = False
     shown_s: float = 0.0
     since_s: float | None = None
     last: Event | None = None
+
+    @property
+    def marked(self) -> Mask:
+        """The cells that belong to a part."""
+        return sum(self.parts)
 
     def on_step_s(self, steady_s: float) -> float:
         """Time for which this step was shown up to a time of the steady clock [s]."""
@@ -94,6 +102,10 @@ def _after(state: State, event: Event, steps: Sequence[Step]) -> State:
             return replace(state, is_begun=True)
         case EventKind.PROPOSED:
             return replace(done, proposals=(*state.proposals, proposal_of(event)))
+        case EventKind.MARKED:
+            return replace(done, parts=(*state.parts, int(event.data['cells'], 16)))
+        case EventKind.UNMARKED:
+            return replace(done, parts=state.parts[:-1])
         case EventKind.TIMED_OUT:
             return replace(state, is_timed_out=True)
         case EventKind.ENDED:
@@ -112,6 +124,7 @@ def _at(state: State, step: int, event: Event) -> State:
         state,
         step=step,
         is_begun=False,
+        parts=(),
         proposals=(),
         is_timed_out=False,
         is_ended=False,
@@ -121,6 +134,8 @@ def _at(state: State, step: int, event: Event) -> State:
 
 
 _GO_ON = {'next': EventKind.WENT_ON}
+_MARKS = {'mark': EventKind.MARKED, 'unmark': EventKind.UNMARKED}
+_MARKING = _MARKS | _GO_ON
 _ACTS = {
     StepKind.CONSENT: {'agree': EventKind.AGREED, 'decline': EventKind.DECLINED},
     StepKind.TEXT: _GO_ON,
@@ -143,6 +158,8 @@ def judge(state: State, steps: Sequence[Step], word: str) -> EventKind | Refused
     if word == 'stop' and step.kind not in (StepKind.DEBRIEF, StepKind.CONSENT):
         return EventKind.STOPPED
     known = _ACTS.get(step.kind, _GO_ON if state.is_ended else {})
+    if step.marks is not None:
+        known = _MARKING if state.marked == step.marks.spec.task.silhouette else _MARKS
     if word in known:
         return known[word]
     if step.trial is not None and not state.is_ended and word in step.trial.condition.mode.wishes:

@@ -36,6 +36,7 @@ class StepKind(str, Enum):
 
     CONSENT = 'consent'
     TEXT = 'text'
+    MARKING = 'marking'
     TRIAL = 'trial'
     BREAK = 'break'
     DEBRIEF = 'debrief'
@@ -73,11 +74,12 @@ class Trial(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A step; it has a text, or is a trial."""
+    """A step; it has a text, is a trial, or marks the parts of a trial's silhouette before it."""
 
     kind: StepKind
     text: str = ''
     trial: Trial | None = None
+    marks: Trial | None = None
 
 
 class _Planned(NamedTuple):
@@ -113,6 +115,8 @@ def steps_of(study: Study, code: str, number: int) -> tuple[Step, ...]:
                 if done and done % study.break_every == 0:
                     steps.append(Step(StepKind.BREAK, study.break_text))
                 done += 1
+            if condition.mark_parts:
+                steps.append(Step(StepKind.MARKING, marks=trial))
             steps.append(Step(StepKind.TRIAL, trial=trial))
     return (*steps, Step(StepKind.DEBRIEF, study.debrief))
 

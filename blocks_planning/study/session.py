@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from blocks_planning.board.geometry import Mask
 from blocks_planning.errors import shown
 from blocks_planning.study.events import EventKind, Moment, event_of
 from blocks_planning.study.log import Log
@@ -17,7 +18,7 @@ from blocks_planning.study.machine import State, judge, state_after
 from blocks_planning.study.modes import Fields
 from blocks_planning.study.notes import read_note, read_seconds
 from blocks_planning.study.plan import Step, Trial
-from blocks_planning.subgoals.drawn import MalformedProposal, Refused
+from blocks_planning.subgoals.drawn import MalformedProposal, Refused, parse_region
 from blocks_planning.subgoals.proposals import (
     MOST_PROPOSALS,
     Proposal,
@@ -100,6 +101,11 @@ class Session:
         return None if self._running is None else self._running.local.record()
 
     @property
+    def shown_trial(self) -> Trial | None:
+        """The trial whose silhouette this step shows; None: it shows none."""
+        return (self.step.trial or self.step.marks) if self.step else None
+
+    @property
     def shown_s(self) -> float:
         """Time for which this step has been shown [s]."""
         return self.state.on_step_s(self._clock().steady_s)
@@ -139,6 +145,8 @@ class Session:
             return kind
         if kind is EventKind.PROPOSED and self._running is not None:
             return self._propose(self._running, word, fields)
+        if kind is EventKind.MARKED and self.shown_trial is not None:
+            return self._mark(self.shown_trial, word, fields)
         self._keep(kind, self._cut_short(kind))
         self._running = self._run()
         self._settle()
@@ -151,7 +159,8 @@ class Session:
             MalformedProposal: if it is not a note.
             RecordError: if it could not be kept.
         """
-        board = None if self._running is None else self._running.trial.spec.task.board
+        trial = self.shown_trial
+        board = None if trial is None else trial.spec.task.board
         if fields.get('step') == self.state.step:
             kind, data = read_note(fields, board)
             self._keep(kind, data)
@@ -198,14 +207,31 @@ class Session:
         if number >= MOST_PROPOSALS:
             refused = Refused('many', 'this was tried too often')
         if refused is not None:
-            data = {'wish': word, 'code': refused.code, 'region': hex(wish.region)}
-            self._keep(EventKind.REFUSED, data)
-            return refused
+            return self._refuse(word, wish.region, refused)
         proposal = Proposal(sequence, number, wish.kind, wish.region, thinking_s)
         self._keep(EventKind.PROPOSED, proposal_to_json(proposal))
         local.say(ProposalMade(trial.spec.trial_id, proposal))
         self._settle()
         return None
+
+    def _mark(self, trial: Trial, word: str, fields: Fields) -> Refused | None:
+        """Mark the cells of a region that belong to no part yet as a part."""
+        task, marked = trial.spec.task, self.state.marked
+        region = parse_region(fields.get('region'), task.board)
+        thinking_s = read_seconds(fields, 'thinking_s')
+        cells = region & task.silhouette & ~marked
+        if not cells:
+            refused = Refused('marked', 'no cell of it is without a part')
+            return self._refuse(word, region, refused)
+        named = {key: trial.to_json()[key] for key in ('phase', 'condition', 'tower')}
+        drawn = {'region': hex(region), 'cells': hex(cells), 'thinking_s': thinking_s}
+        self._keep(EventKind.MARKED, named | drawn)
+        return None
+
+    def _refuse(self, word: str, region: Mask, refused: Refused) -> Refused:
+        data = {'wish': word, 'code': refused.code, 'region': hex(region)}
+        self._keep(EventKind.REFUSED, data)
+        return refused
 
     def _run(self) -> _Running | None:
         """The trial of this step, with its proposals so far."""

@@ -12,6 +12,7 @@
         instructions: [...]        # optional: pages, before its first tower
         practice: [cogsci2021/16]  # optional: towers to begin with, as they are listed
         time_limit_s: 120          # optional: of a tower [s]
+        mark_parts: true           # optional: mark the parts of each tower before it
     towers: [cogsci2021/5, ...]    # addresses, as on the command line
     library: 1x2,2x1,2x2           # optional: the paper's library if left out
     order: latin square            # or fixed, or shuffled
@@ -72,6 +73,7 @@ class Condition:
         instructions: pages before its first trial.
         practice: towers to begin with.
         time_limit_s: of a trial [s]; 0: none.
+        mark_parts: whether the parts of each silhouette are marked before its trial.
     """
 
     name: str
@@ -79,6 +81,7 @@ class Condition:
     instructions: tuple[str, ...]
     practice: tuple[Tower, ...]
     time_limit_s: int
+    mark_parts: bool = False
 
 
 @dataclass(frozen=True)
@@ -125,11 +128,14 @@ _MADE_OF_PARTS = ('conditions', 'towers', 'effort')
 
 
 def _condition_to_json(condition: Condition) -> dict[str, Any]:
-    return {
+    found = {
         **vars(condition),
         'mode': condition.mode.name,
         'practice': [_tower_to_json(one) for one in condition.practice],
     }
+    if not condition.mark_parts:
+        del found['mark_parts']  # studies that began before this key existed keep their id
+    return found
 
 
 def _tower_to_json(tower: Tower) -> dict[str, Any]:
@@ -203,6 +209,12 @@ def _word(value: Located, words: tuple[str, ...]) -> str:
     return text
 
 
+def _flag(value: Located) -> bool:
+    if not isinstance(value.content, bool):
+        raise value.fail(f'expected true or false, got {value}')
+    return value.content
+
+
 def _search(value: Located) -> Any:
     searches = read_planners(Located([value], value.place), make_search)
     if len(searches) != 1:
@@ -211,7 +223,9 @@ def _search(value: Located) -> Any:
 
 
 def _condition(value: Located, library: Library) -> Condition:
-    entries = value.entries('name', 'mode', optional=('instructions', 'practice', 'time_limit_s'))
+    entries = value.entries(
+        *('name', 'mode'), optional=('instructions', 'practice', 'time_limit_s', 'mark_parts')
+    )
     name = read_text(entries['name'])
     if not _NAME.fullmatch(name):
         raise entries['name'].fail(f'expected up to 32 letters, digits, _ and -, got {name!r}')
@@ -223,4 +237,5 @@ def _condition(value: Located, library: Library) -> Condition:
         instructions=_optional(entries, 'instructions', _texts, ()),
         practice=tuple(_optional(entries, 'practice', towers, [])),
         time_limit_s=_optional(entries, 'time_limit_s', limit, 0),
+        mark_parts=_optional(entries, 'mark_parts', _flag, False),
     )

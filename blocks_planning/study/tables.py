@@ -79,6 +79,7 @@ def tables_of(code: str, status: str, events: Sequence[Event]) -> dict[str, list
         'trials': [_trial(run) for run in runs],
         'proposals': [row for run in runs for row in _proposals(run)],
         'placements': [row for run in runs for row in _placements(run)],
+        'parts': list(_parts(events)),
         'pointer': list(_pointer(events)),
         'events': list(_events(events)),
     }
@@ -136,6 +137,20 @@ def _outcome(record: TrialRecord | None, proposal: Proposal) -> str:
 def _placements(run: Run) -> Iterator[Row]:
     for number, placed in enumerate(run.record.placements if run.record else ()):
         yield {'step': run.began.step, 'placement': number, **placed._asdict()}
+
+
+def _parts(events: Sequence[Event]) -> Iterator[Row]:
+    """The parts that were not taken back, step by step."""
+    standing: dict[int, list[Event]] = {}
+    for event in events:
+        if event.kind is EventKind.MARKED:
+            standing.setdefault(event.step, []).append(event)
+        elif event.kind is EventKind.UNMARKED:
+            del standing[event.step][-1:]
+    for step, marked in standing.items():
+        for number, event in enumerate(marked):
+            times = {'at': event.at, 'steady_s': event.steady_s}
+            yield {'step': step, 'part': number} | event.data | times
 
 
 def _pointer(events: Sequence[Event]) -> Iterator[Row]:

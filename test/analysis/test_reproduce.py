@@ -26,7 +26,9 @@ CLAIM = {
 FIGURES = (
     *('figure-2', 'figure-3-published', 'figure-3-text'),
     *('figure-4-published', 'figure-4-text', 'people'),
+    *('behaviour-building', 'behaviour-parts', 'behaviour-difficulty'),
 )
+STRATEGIES = ('none', 'scoping', 'full')
 MEASURES = {'success', 'action_planning_cost', 'subgoal_planning_cost', 'blocks', 'subgoals'}
 
 
@@ -50,7 +52,7 @@ def test_results_have_the_structure_that_readers_rely_on(results: Any) -> None:
     for preset in (results, *results['presets'].values()):
         assert set(preset['planners']) == set(preset['lambda']) == {'bfs', 'astar'}
         for planners in preset['planners'].values():
-            assert set(planners) == {'none', 'scoping', 'full'}
+            assert set(planners) == set(STRATEGIES)
             for estimates in planners.values():
                 assert set(estimates) == MEASURES
                 assert set(estimates['success']) == {'mean', 'ci', 'p', 'se'}
@@ -79,6 +81,17 @@ def test_exact_values_stand_beside_the_sampled_ones(results: Any) -> None:
             assert 0 < row['exact']['success'] < 1
             # The mean of 16 towers with 2 seeds each.
             assert abs(row['success']['mean'] - row['exact']['success']) < 0.2
+
+
+def test_people_stand_beside_every_planner(folder: Path, results: Any) -> None:
+    planners = [f'{search} {how}' for search in ('bfs', 'astar') for how in STRATEGIES]
+    found = results['behaviour']
+    assert [row['who'] for row in found['building']] == ['people', *planners]
+    assert set(found['difficulty']['rho']) == set(planners)
+    html = (folder / 'report.html').read_text()
+    for row in found['building']:
+        shown = f'{100 * row["measures"]["lowest_row"]["mean"]:.1f}'
+        assert f'>{shown} <span' in html
 
 
 def test_report_is_in_one_piece(folder: Path) -> None:

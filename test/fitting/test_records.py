@@ -11,11 +11,11 @@ import builders
 import numpy as np
 import pytest
 
-from blocks_planning.board.geometry import area
+from blocks_planning.board.geometry import Mask, area
 from blocks_planning.errors import BlocksPlanningError
 from blocks_planning.fitting.choiceset import choice_set
 from blocks_planning.fitting.models import parse_model
-from blocks_planning.fitting.options import OneAhead, Solves
+from blocks_planning.fitting.options import Ahead, Solves
 from blocks_planning.fitting.points import Asking, points_of
 from blocks_planning.fitting.simulation import Chooser, roll_out
 from blocks_planning.people.families import family_names, find_family
@@ -66,7 +66,7 @@ def test_choices_of_a_person_are_the_regions_to_be_built() -> None:
 @pytest.mark.parametrize('family', family_names())
 def test_options_are_the_regions_with_what_their_solves_gave(family: str) -> None:
     task = builders.task(builders.FRAME)
-    options = OneAhead(family, Solves()).options(task, 0, ASKING)
+    options = Ahead(family, Solves()).options(task, 0, ASKING)
     assert [option.cells for option in options] == find_family(family)(task, 0)
     for option in options:
         result = solve(Problem(task, 0, option.cells), *ASKING)
@@ -74,6 +74,31 @@ def test_options_are_the_regions_with_what_their_solves_gave(family: str) -> Non
         if result.solved:
             assert option.sequences == ((area(option.cells), result.planning_cost),)
             assert option.placements == result.placements
+
+
+@pytest.mark.parametrize('family', family_names())
+@pytest.mark.parametrize('horizon', [1, 2, 3])
+@pytest.mark.parametrize('lam', [0.0, 0.003, 0.1])
+def test_best_sequence_of_an_option_is_that_of_a_planner(
+    family: str, horizon: int, lam: float
+) -> None:
+    record = builders.record(
+        builders.CHAIR, lam=lam, regions=family, horizon=horizon, depth=2, seed=3, budget=500
+    )
+    maker = Ahead(family, Solves(), horizon)
+    for decision in (entry.decision for entry in record.decisions):
+        best: dict[Mask, float] = {}
+        for candidate in decision.candidates:
+            if candidate.value is not None:
+                cells = candidate.regions[0].cells & ~decision.built
+                best[cells] = max(candidate.value, best.get(cells, candidate.value))
+        options = maker.options(record.spec.task, decision.built, ASKING)
+        found = {
+            option.cells: max(one.cells - lam * one.cost for one in option.sequences)
+            for option in options
+            if option.sequences
+        }
+        assert found == pytest.approx(best)
 
 
 def test_quick_try_gives_the_answer_of_the_whole_budget() -> None:
@@ -88,16 +113,16 @@ def test_quick_try_gives_the_answer_of_the_whole_budget() -> None:
 def test_solves_are_shared() -> None:
     solves = Solves()
     task = builders.task(builders.SQUARE)
-    OneAhead('rectangles', solves).options(task, 0, ASKING)
+    Ahead('rectangles', solves).options(task, 0, ASKING)
     known = len(solves)
-    OneAhead('rectangles', solves).options(task, 0, ASKING)
+    Ahead('rectangles', solves).options(task, 0, ASKING)
     assert len(solves) == known > 0
 
 
 def test_simulated_participant_builds_what_can_be_built() -> None:
     towers = {'chair': builders.task(builders.CHAIR), 'never': builders.task('#../#../#.#')}
     values = {'lambda': 0.001, 'temperature': 0.5, 'lapse': 0.1}
-    maker = OneAhead('rows', Solves())
+    maker = Ahead('rows', Solves())
     chooser = Chooser(parse_model('rows'), values, maker, np.random.default_rng(1))
     points = roll_out('s', towers, ASKING, chooser)
     # Nothing can be built of the second tower, so that its trial ends at once.

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 from made_up_options import MadeUp, points
 
-from blocks_planning.errors import ConfigurationError
+from blocks_planning.board.stimuli import find_stimuli
+from blocks_planning.board.task import Task
 from blocks_planning.fitting import estimation
 from blocks_planning.fitting.choiceset import ChoiceSet, choice_set
 from blocks_planning.fitting.comparison import (
@@ -18,13 +20,15 @@ from blocks_planning.fitting.comparison import (
     cross_validate,
 )
 from blocks_planning.fitting.models import parse_model
+from blocks_planning.fitting.points import Asking
 from blocks_planning.fitting.recovery import (
     median_errors,
     recover_models,
     recover_parameters,
     win_rates,
 )
-from blocks_planning.fitting.simulation import Chooser, choose_again
+from blocks_planning.fitting.simulation import Chooser, choose_again, roll_out
+from blocks_planning.search.searches import BreadthFirst
 
 ROWS = parse_model('rows')
 TRUE = {'lambda': 0.002, 'temperature': 1.0, 'lapse': 0.05}
@@ -125,22 +129,19 @@ def test_comparison_has_every_session_and_all_together() -> None:
 
 
 def test_parameters_of_forty_sessions_of_sixteen_towers_are_recovered() -> None:
-    sessions = [points(f's{number}') for number in range(40)]
-    rows = recover_parameters(sessions, ROWS, makers(), seed=1)
+    towers = {one.name: Task(one.board, one.silhouette) for one in find_stimuli('cogsci2021')}
+    asking = Asking(BreadthFirst(3), 0, 100_000)
+    sessions = [partial(roll_out, str(number), towers, asking) for number in range(40)]
+    rows = recover_parameters(sessions, ROWS, Makers(), seed=1)
     assert len(rows) == 120
     errors = median_errors(rows)
-    assert errors['lambda'] < 0.2
-    assert errors['temperature'] < 0.3
+    assert errors['lambda'] < 0.06
+    assert errors['temperature'] < 0.35
 
 
 def test_true_model_wins() -> None:
-    sessions = [points(f's{number}') for number in range(5)]
+    sessions = [partial(choose_again, points(f's{number}')) for number in range(5)]
     names = ('rows', 'rows-no-cost', 'rows-no-progress', 'rectangles', 'random')
     rows = recover_models(sessions, [parse_model(name) for name in names], makers(), seed=2)
     rates = win_rates(rows)
     assert {name: rates[name][name] >= 0.8 for name in names} == dict.fromkeys(names, True)
-
-
-def test_horizon_without_a_planner_is_refused() -> None:
-    with pytest.raises(ConfigurationError, match='no option maker for horizon 2 is registered'):
-        Makers().maker(parse_model('rows-2'))

@@ -88,6 +88,9 @@ class Person:
         assert step is not None
         if step.kind is StepKind.TRIAL and not self.session.state.is_ended:
             self.whole()
+        if step.marks is not None:
+            task = step.marks.spec.task
+            self.draw('mark', task.board.draw(task.silhouette).split('\n'))
         word = 'agree' if step.kind is StepKind.CONSENT else 'next'
         assert self.act(word) is None
         assert self.session.state.step == before + 1
@@ -116,6 +119,12 @@ def study(tmp_path: Path) -> Study:
 @pytest.fixture
 def clock() -> Clock:
     return Clock()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Where the first participant's events are kept."""
+    return tmp_path / 'out' / 'participants' / 'P01'
 
 
 @pytest.fixture

@@ -39,11 +39,6 @@ def records(folder: Path) -> list[TrialRecord]:
     return [record_from_json(data['record'], 'event') for data in found if data['record']]
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    return tmp_path / 'out' / 'participants' / 'P01'
-
-
 def test_a_session_from_consent_to_debrief(person: Person, folder: Path) -> None:
     session = person.session
     seen = []

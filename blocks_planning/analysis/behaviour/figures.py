@@ -85,7 +85,7 @@ def marking_figure(parts: dict[str, Any]) -> Figure:
 def difficulty_figure(found: dict[str, Any]) -> Figure:
     """Rank correlation of people's success with each planner's, by tower."""
     known = {name: value for name, value in found['rho'].items() if value['mean'] is not None}
-    figure = new_figure(6.5, 1.2 + 0.36 * (len(known) + 1))
+    figure = new_figure(7, 1.2 + 0.36 * (len(known) + 1))
     with styled():
         ax = figure.subplots()
         shown = {'one half of the people': found['among_people'], **known}

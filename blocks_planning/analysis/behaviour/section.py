@@ -22,8 +22,8 @@ with extra('figures'):
     from matplotlib.figure import Figure
 
 TEMPLATE = 'behaviour.html'
-"""The partial; it needs ``behaviour`` (:func:`section_content`), ``figures`` (URLs by name) and
-the filter ``number``."""
+"""The partial, which report.html includes; it needs ``behaviour`` (:func:`section_content`) and
+``figures`` (URLs by name)."""
 
 
 def compare_behaviour(sweep: Path, preset: str = 'published') -> dict[str, Any]:

@@ -37,6 +37,8 @@ def frame_json(title: str, session: Session | None) -> Json:
     frame['stopped'] = state.status is Status.STOPPED
     if step.trial is not None and session.record is not None:
         frame['trial'] = _trial_json(step.trial, session.record, session)
+    if step.marks is not None:
+        frame['trial'] = _marking_json(step.marks, state)
     return frame
 
 
@@ -50,13 +52,8 @@ def text_json(text: str) -> list[Json]:
 
 def _trial_json(trial: Trial, record: TrialRecord, session: Session) -> Json:
     task, state = trial.spec.task, session.state
-    label = f'{"Practice tower" if trial.is_practice else "Tower"} {trial.number} of {trial.total}'
     shown: Json = {
-        'id': state.step,
-        'stimulus': label,
-        'width': task.board.width,
-        'height': task.board.height,
-        'silhouette': task.board.draw(task.silhouette).split('\n'),
+        **_silhouette_json(trial, state),
         'library': [list(block) for block in task.library],
         'wishes': list(trial.condition.mode.wishes),
         'all_blocks': _blocks_json(record),
@@ -71,6 +68,47 @@ def _trial_json(trial: Trial, record: TrialRecord, session: Session) -> Json:
     if 'place' in trial.condition.mode.wishes:
         shown['places'] = [_places(record, block) for block in task.library]
     return shown
+
+
+def _silhouette_json(trial: Trial, state: State) -> Json:
+    """What is shown of a trial, and of the marking of its parts."""
+    board = trial.spec.task.board
+    phase = 'Practice tower' if trial.is_practice else 'Tower'
+    return {
+        'id': state.step,
+        'stimulus': f'{phase} {trial.number} of {trial.total}',
+        'width': board.width,
+        'height': board.height,
+        'silhouette': board.draw(trial.spec.task.silhouette).split('\n'),
+    }
+
+
+def _marking_json(trial: Trial, state: State) -> Json:
+    """The marking of a silhouette: every cell of a part is shown in the part's colour."""
+    task = trial.spec.task
+    return {
+        **_silhouette_json(trial, state),
+        'library': [],
+        'wishes': ['mark', 'unmark'],
+        'all_blocks': [
+            {'width': 1, 'height': 1, 'column': column, 'row': row, **_colours(number)}
+            for number, part in enumerate(state.parts)
+            for column, row in task.board.cells(part)
+        ],
+        'sequence': len(state.parts),
+        'proposals': state.acts,
+        'answer': 'marked' if state.marked == task.silhouette else '',
+        'status': TrialStatus.BUILDING.value,
+        'timed_out': False,
+        'left_s': None,
+        'limit_s': 0,
+    }
+
+
+def _colours(number: int) -> Json:
+    """The number and the colours of what belongs to a subgoal or a part, numbered from 0."""
+    fill = palette.colour_of(number)
+    return {'subgoal': number, 'fill': fill, 'ink': palette.ink_on(fill)}
 
 
 def _places(record: TrialRecord, block: Block) -> list[list[Any]]:
@@ -89,9 +127,7 @@ def _blocks_json(record: TrialRecord) -> list[Json]:
     found = []
     for index, placed in enumerate(record.placements):
         subgoal = sum(start <= index for start in starts) - 1
-        fill = palette.colour_of(subgoal)
-        words = {'subgoal': subgoal, 'fill': fill, 'ink': palette.ink_on(fill)}
-        found.append({**placed._asdict(), **words})
+        found.append({**placed._asdict(), **_colours(subgoal)})
     return found
 
 

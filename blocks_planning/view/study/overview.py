@@ -41,11 +41,12 @@ def _words(step: Step | None) -> str:
     """What a participant does in a step."""
     if step is None:
         return 'the session is over'
-    if step.trial is None:
+    trial = step.trial or step.marks
+    if trial is None:
         return step.kind.value
-    trial = step.trial
     phase = 'practice' if trial.is_practice else 'trial'
-    place = f'{phase} {trial.number} of {trial.total}'
+    doing = 'marks the parts of ' if step.marks else ''
+    place = f'{doing}{phase} {trial.number} of {trial.total}'
     return f'{place}, {trial.condition.name}, {trial.spec.stimulus}'
 
 

@@ -161,8 +161,8 @@ export class Building {
 
   #draw() {
     const layer = this.board.layers?.drawn;
-    if (!layer) return;
-    if (!this.isOn || this.column === null) {
+    if (!layer || !this.isOn) return; // what others draw is in this layer too
+    if (this.column === null) {
       layer.replaceChildren();
       this.#say('Choose a block and hold it over the picture.', 'none');
       return;
@@ -182,7 +182,6 @@ export class Building {
   }
 
   #say(text, check) {
-    if (!this.isOn) return;
     say(byId('preview'), text);
     byId('preview').dataset.check = check;
   }

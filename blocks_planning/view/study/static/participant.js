@@ -3,6 +3,7 @@
 import { Board } from './board.js';
 import { Building } from './building.js';
 import { byId, say, whenNew } from './dom.js';
+import { Marking } from './marking.js';
 import { Scoping } from './scoping.js';
 import { Talk } from './talk.js';
 import { elementsOf } from './texts.js';
@@ -22,6 +23,7 @@ const ANSWERS = {
   built: 'It is built.',
   failed: 'There is no way to fill this part. Try another one.',
   withdrawn: 'Withdrawn. Draw another part.',
+  marked: 'Every cell belongs to a part. You can go on.',
 };
 const OVER = {
   success: 'The tower is complete.',
@@ -37,7 +39,7 @@ const board = new Board(byId('board'));
 const talk = new Talk(take, refused, showLink);
 const tell = (note, more) => talk.note(frame, note, more);
 const tellPreview = settled((more) => tell('preview', more));
-const modes = [Scoping, Building].map((Mode) => ({ Mode, own: new Mode(board, wish, tellPreview) }));
+const modes = [Marking, Scoping, Building].map((Mode) => ({ Mode, own: new Mode(board, wish, tellPreview) }));
 const trace = new Trace(board, tell);
 const showText = whenNew((blocks) => byId('text').replaceChildren(...elementsOf(blocks)));
 const showStep = whenNew(() => {
@@ -110,21 +112,23 @@ function showTrial(trial) {
   if (isOpen) meant.own.turn(true, trial, isNew || trial.answer === 'withdrawn');
   trace.isOn = isOpen;
   byId('preview').hidden = !isOpen;
-  byId('give-up').hidden = !isOpen;
-  byId('next').hidden = isOpen;
+  byId('give-up').hidden = !isOpen || Marking.isMeant(trial);
+  byId('next').hidden = isOpen && trial.answer !== 'marked';
   showAnswer(trial, isOpen);
   showTime(trial, isOpen);
   if (!isOpen && document.activeElement === document.body) byId('next').focus();
 }
 
 /** The part of a trial that does not change while it runs, so that the board is made once. */
-const fixed = ({ id, stimulus, width, height, silhouette }) => ({ id, stimulus, width, height, silhouette });
+const fixed = ({ id, stimulus, width, height, silhouette, wishes }) => ({
+  id, stimulus, width, height, silhouette, done: wishes.includes('mark') ? 'marked' : 'built',
+});
 
 function showAnswer(trial, isOpen) {
   const place = byId('answer');
   const over = trial.timed_out ? 'The time for this tower is over.' : OVER[trial.status] ?? 'This tower is over.';
   say(place, isOpen ? ANSWERS[trial.answer] ?? '' : over);
-  const isGood = isOpen ? trial.answer === 'built' : trial.status === 'success';
+  const isGood = isOpen ? ['built', 'marked'].includes(trial.answer) : trial.status === 'success';
   place.dataset.outcome = isGood ? 'built' : 'failed';
 }
 

@@ -15,23 +15,21 @@ export function blockPicture([width, height], name) {
 
 export const blockName = ([width, height]) => `${width} wide, ${height} high`;
 
-export class Scoping {
-  /** `wish` asks for something: (word, fields); `tell` notes what is drawn. */
-  constructor(board, wish, tell) {
-    this.board = board;
-    this.wish = wish;
-    this.drawing = new Drawing(board, () => this.#preview(), () => this.#confirm());
-    this.showBlocks = whenNew((library) => byId('blocks').replaceChildren(
-      ...library.map((block) => blockPicture(block, blockName(block)))));
-    byId('confirm').addEventListener('click', () => this.#confirm());
-    byId('withdraw').addEventListener('click', () => {
-      if (this.#isPressable('withdraw')) this.wish('withdrawn', this.#region());
-    });
-    byId('add').addEventListener('change', (event) => {
+/** A part of the tower is drawn, and asked for with a button or Enter. */
+export class Drawn {
+  /**
+   * `wish` asks for something: (word, fields); `tell` notes what is drawn; `ids`: of the panel, of
+   * its button and of its box for adding; `word` is what is asked for.
+   */
+  constructor(board, wish, tell, ids, word) {
+    Object.assign(this, { board, wish, ids, word });
+    this.drawing = new Drawing(board, () => this.preview(), () => this.confirm());
+    byId(ids.confirm).addEventListener('click', () => this.confirm());
+    byId(ids.add).addEventListener('change', (event) => {
       this.drawing.adds = event.target.checked;
     });
     const drawn = () => {
-      if (this.drawing.isOn && this.drawing.cells.size > 0) tell(this.#region());
+      if (this.drawing.isOn && this.drawing.cells.size > 0) tell(this.region());
     };
     board.place.addEventListener('pointerup', drawn);
     board.place.addEventListener('keyup', (event) => {
@@ -39,49 +37,67 @@ export class Scoping {
     });
   }
 
-  static isMeant = (trial) => trial.wishes.includes('build');
-
   /** Show the turn of a trial; `isNew`: the state is another one. */
   turn(isOn, trial, isNew) {
-    byId('scoping').hidden = !isOn;
+    byId(this.ids.panel).hidden = !isOn;
     this.drawing.turn(isOn);
     if (!isOn) return;
-    this.showBlocks(trial.library);
+    this.begin(trial);
     if (isNew) this.drawing.clear();
     else this.drawing.draw();
-    this.#preview();
+    this.preview();
   }
 
-  #region() {
+  region() {
     const { width, height } = this.board.trial;
     return { region: pictureOf(this.drawing.cells, width, height) };
   }
 
-  #toFill() {
-    return without(both(this.drawing.cells, this.board.target), this.board.built).size;
-  }
-
-  #isPressable(id) {
+  isPressable(id) {
     return byId(id).getAttribute('aria-disabled') !== 'true';
   }
 
-  #preview() {
-    if (!this.drawing.isOn || this.board.trial === null) return;
-    const { size } = this.drawing.cells;
-    const toFill = this.#toFill();
-    const outside = without(without(this.drawing.cells, this.board.target), this.board.built).size;
-    let text = 'Nothing is drawn yet.';
-    if (toFill) text = `${counted(toFill, 'cell')} to fill${outside ? ` (${outside} outside, left out)` : ''}.`;
-    else if (size && outside === size) text = 'This is outside the silhouette: draw over the grey cells.';
-    else if (size) text = 'All of it is built already: draw over cells that are still empty.';
-    say(byId('preview'), text);
-    byId('preview').dataset.check = size && !toFill ? 'bad' : size ? 'good' : 'none';
-    // A disabled button would lose the focus of who uses the keyboard.
-    byId('confirm').setAttribute('aria-disabled', String(toFill === 0));
-    byId('withdraw').setAttribute('aria-disabled', String(size === 0));
+  /** A disabled button would lose the focus of who uses the keyboard. */
+  allow(id, isPressable) {
+    byId(id).setAttribute('aria-disabled', String(!isPressable));
   }
 
-  #confirm() {
-    if (this.drawing.isOn && this.#isPressable('confirm')) this.wish('build', this.#region());
+  preview() {
+    if (!this.drawing.isOn || this.board.trial === null) return;
+    const { cells } = this.drawing;
+    const useful = without(both(cells, this.board.target), this.board.built).size;
+    const outside = without(without(cells, this.board.target), this.board.built).size;
+    say(byId('preview'), this.words(cells.size, useful, outside));
+    byId('preview').dataset.check = cells.size && !useful ? 'bad' : cells.size ? 'good' : 'none';
+    this.allow(this.ids.confirm, useful > 0);
+  }
+
+  confirm() {
+    if (this.drawing.isOn && this.isPressable(this.ids.confirm)) this.wish(this.word, this.region());
+  }
+}
+
+export class Scoping extends Drawn {
+  constructor(board, wish, tell) {
+    super(board, wish, tell, { panel: 'scoping', confirm: 'confirm', add: 'add' }, 'build');
+    this.showBlocks = whenNew((library) => byId('blocks').replaceChildren(
+      ...library.map((block) => blockPicture(block, blockName(block)))));
+    byId('withdraw').addEventListener('click', () => {
+      if (this.isPressable('withdraw')) this.wish('withdrawn', this.region());
+    });
+  }
+
+  static isMeant = (trial) => trial.wishes.includes('build');
+
+  begin(trial) {
+    this.showBlocks(trial.library);
+  }
+
+  words(size, toFill, outside) {
+    this.allow('withdraw', size > 0);
+    if (toFill) return `${counted(toFill, 'cell')} to fill${outside ? ` (${outside} outside, left out)` : ''}.`;
+    if (size && outside === size) return 'This is outside the silhouette: draw over the grey cells.';
+    if (size) return 'All of it is built already: draw over cells that are still empty.';
+    return 'Nothing is drawn yet.';
   }
 }

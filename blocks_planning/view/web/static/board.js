@@ -112,7 +112,7 @@ export class Board {
     const built = this.built.size;
     const subgoal = step.label === '' ? '' : `; the subgoal is ${step.label}`;
     say(byId('board-text'), `The tower ${trial.stimulus} on a board of ${trial.width} by `
-      + `${trial.height} cells: ${built} of ${this.target.size} cells are built${subgoal}.`);
+      + `${trial.height} cells: ${built} of ${this.target.size} cells are ${trial.done ?? 'built'}${subgoal}.`);
   }
 }
 
