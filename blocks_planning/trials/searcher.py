@@ -21,6 +21,7 @@ from blocks_planning.trials.messages import (
     TrialStarted,
     WorldState,
 )
+from blocks_planning.trials.status import TrialStatus
 
 MOST_SOLVING = 1 << 16
 """Most queries that are open at once; excess queries are dropped, and the selector asks again."""
@@ -117,8 +118,11 @@ def _act(memory: Memory, only_for: Query | None = None) -> tuple[Memory, tuple[M
 
 
 def _next_placement(trial: TrialStarted, state: WorldState, chosen: SubgoalChosen) -> int | None:
-    """Index in the plan of the placement to order in the latest state; None if there is none."""
-    if chosen.sequence > state.sequence:
+    """Index in the plan of the placement to order in the latest state; None if there is none.
+
+    A board on which the trial is over gets no more orders.
+    """
+    if chosen.sequence > state.sequence or state.status is not TrialStatus.BUILDING:
         return None
     seen = history(trial.spec.task.board, state.observations)
     progress = chosen.progress(trial.spec, seen)
