@@ -2,8 +2,8 @@
 # Paths in recipes are relative, so the checkout may lie in a folder with spaces in its name.
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo-setup robot-setup demo reproduce test long parity robot faults fuzz cancels lint types bench
-.PHONY: soak dist clean
+.PHONY: help setup demo-setup robot-setup demo reproduce test long parity robot robot-faults faults fuzz
+.PHONY: cancels lint types bench soak dist clean
 .SUFFIXES:
 
 BIN := .venv/bin
@@ -76,6 +76,9 @@ long: setup  ## Run the tests that take long (ARGS='-k word' for some)
 
 faults: setup  ## Kill nodes while trials run (ARGS='--kills 200 --trials 60 --seed 0')
 	PYTHONPATH=test $(BIN)/python -m faults $(ARGS)
+
+robot-faults: setup robot-setup  ## Cancel the robot 100 times, kill its node 50 times (ARGS='--seed 0')
+	PYTHONPATH=test $(BIN)/python -m faults.robot $(ARGS)
 
 fuzz: setup  ## Send 100,000 hostile messages, read 20,000 spoilt files (MESSAGES, FILES, SEED)
 	cd test && ../$(BIN)/python -m faults.fuzz_messages $(MESSAGES) $(SEED)

@@ -14,6 +14,7 @@ import click
 
 from blocks_planning import __version__
 from blocks_planning.cli.counting import count, exact
+from blocks_planning.cli.embodiment import robot_study
 from blocks_planning.cli.fitting import fit
 from blocks_planning.cli.graph import run
 from blocks_planning.cli.inspecting import draw, verify
@@ -57,6 +58,7 @@ for command in (
     reproduce,
     growth,
     uncertain,
+    robot_study,
     fit,
     study,
 ):

@@ -52,7 +52,10 @@ class Behaviour:
     # --- orders -----------------------------------------------------------------------------
 
     def begin(self, placement: Placement, row: int | None, top: float) -> None:
-        """Begin an act; a block that is still held from an earlier one is brought back first.
+        """Begin an act, for which the feeder presents the block.
+
+        Before that, a block that is still held from an earlier act is brought back, and an arm that
+        is so low that it could touch the block moves up.
 
         Args:
             placement: the order.
@@ -60,19 +63,19 @@ class Behaviour:
             top: highest point of the tower [m].
         """
         old, now, sizes = self.memory, self.simulation.time, self.sizes
-        is_holding = self.is_holding
-        number = old.number if is_holding else self._feeder.present(placement.block)
-        self.memory = memory = Memory(placement, number, began=now, entered=now, arm=old.arm)
         height = placement.block.height * sizes.cell
+        is_prepared = not self.is_holding and old.arm.z.position > height + sizes.pad[2]
+        number = self._feeder.present(placement.block) if is_prepared else old.number
+        self.memory = memory = Memory(placement, number, began=now, entered=now, arm=old.arm)
         hanging = max(height, self._held_height) - sizes.below_top
         memory.travel = max(top, height) + sizes.clearance + max(hanging, sizes.pad[2])
         memory.landing = (row or 0) * sizes.cell + height - sizes.below_top
-        memory.phase = Phase.BRING_BACK if is_holding else Phase.APPROACH
+        memory.phase = Phase.APPROACH if is_prepared else Phase.BRING_BACK
         if row is None:
             block, column = placement
             memory.failed, memory.reason = Phase.APPROACH, Reason.OUT_OF_REACH
             memory.text = f'block {block} in column {column} would not end on the board'
-            memory.phase = Phase.BRING_BACK if is_holding else Phase.RETREAT
+            memory.phase = Phase.RETREAT if is_prepared else Phase.BRING_BACK
 
     def cancel(self) -> None:
         """Stop the arm; it keeps holding its block."""
@@ -233,7 +236,7 @@ class Behaviour:
         return Phase.IDLE
 
     def _bring_back(self) -> Phase | None:
-        """Carry a block back; then continue with the order, or retreat if it has failed."""
+        """Carry a held block back; then continue with the order, or retreat if it has failed."""
         memory = self.memory
         if self.is_holding:
             # Drop it from a small height, so that it is not pushed into the table.
@@ -259,7 +262,9 @@ class Behaviour:
 
     @property
     def _held_height(self) -> float:
-        """Height of the block that was presented last [m]."""
+        """Height of the block between the fingers [m]; 0 if there is none."""
+        if not self.is_holding:
+            return 0.0
         return self.simulation.body(self.memory.number).block.height * self.sizes.cell
 
     @property

@@ -62,5 +62,6 @@ def is_blocked(simulation: Simulation, arm: Arm) -> bool:
 def is_holding(simulation: Simulation, arm: Arm) -> bool:
     """Whether the closed fingers hold something."""
     sizes = simulation.sizes
-    closing = float(simulation.joints[2:].mean())
+    front, back = simulation.joints[2:].tolist()
+    closing = (front + back) / 2
     return arm.grip > face(sizes) and closing < face(sizes) + sizes.overclosing / 2

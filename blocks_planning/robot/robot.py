@@ -141,12 +141,18 @@ class Robot:
         """Perceive the board; the next order uses this perception."""
         bodies = self._looked_at()
         if self._camera is None:
-            sightings = see_poses(self.simulation, bodies, self.seed, self._perceptions)
+            spread = self.settings.pose_noise_m
+            sightings = see_poses(self.simulation, bodies, spread, self.seed, self._perceptions)
         else:
             sightings = self._camera.see(bodies)
         self._perceptions += 1
         self.seen = fit(self.board, sightings, TOLERANCE)
         return self.seen
+
+    def actual(self) -> Perceived:
+        """The board without noise, for a comparison; orders do not use it."""
+        sightings = see_poses(self.simulation, self._looked_at(), 0.0, self.seed, 0)
+        return fit(self.board, sightings, TOLERANCE)
 
     def _looked_at(self) -> list[Body]:
         """Every block except those at the feeder and in the fingers."""

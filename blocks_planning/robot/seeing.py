@@ -15,23 +15,23 @@ LEAST_UPRIGHT = 0.87
 
 
 def see_poses(
-    simulation: Simulation, bodies: Iterable[Body], seed: int, count: int
+    simulation: Simulation, bodies: Iterable[Body], spread: float, seed: int, count: int
 ) -> list[Sighting]:
     """Sightings of blocks from their poses.
 
     Args:
         simulation: the simulation.
         bodies: the blocks to perceive.
+        spread: standard deviation of a position [m].
         seed: of the noise.
         count: number of earlier perceptions.
     """
-    return [_see(simulation, body, seed, count) for body in bodies]
+    return [_see(simulation, body, spread, seed, count) for body in bodies]
 
 
-def _see(simulation: Simulation, body: Body, seed: int, count: int) -> Sighting:
+def _see(simulation: Simulation, body: Body, spread: float, seed: int, count: int) -> Sighting:
     pose, sizes = simulation.pose(body.number), simulation.sizes
     half_x, _, half_z = sizes.half(body.block)
-    spread = simulation.settings.pose_noise_m
     across, up, turn = noise.normal(seed, 'perceive', count, body.number, size=3)
     angle = angle_of(pose) + spread * turn / max(half_x, half_z)
     x, y, z = pose.position

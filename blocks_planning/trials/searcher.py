@@ -21,6 +21,7 @@ from blocks_planning.trials.messages import (
     TrialStarted,
     WorldState,
 )
+from blocks_planning.trials.status import TrialStatus
 
 MOST_SOLVING = 1 << 16
 """Most queries that are open at once; excess queries are dropped, and the selector asks again."""
@@ -121,7 +122,12 @@ def _act(memory: Memory, only_for: Query | None = None) -> tuple[Memory, tuple[M
 
 
 def _next_placement(trial: TrialStarted, state: WorldState, chosen: SubgoalChosen) -> int | None:
-    """Index in the plan of the placement to order in the latest state; None if there is none."""
+    """Index in the plan of the placement to order in the latest state; None if there is none.
+
+    A board on which the trial is over gets no more orders.
+    """
+    if state.status is not TrialStatus.BUILDING:
+        return None
     seen = history(trial.spec.task.board, state.observations)
     progress = chosen.progress(trial.spec, seen)
     return progress.done if progress.is_open else None

@@ -116,6 +116,15 @@ def test_cancel_stops_the_arm_and_the_next_order_works(phase: Phase) -> None:
     check_next_works(robot)
 
 
+def test_first_block_may_be_higher_than_the_arm_at_rest() -> None:
+    robot = Robot(Board(4, 6))
+    tall = Placement(Block(1, 5), 0)
+    robot.order(tall)
+    assert robot.simulation.bodies == ()  # the arm moves up first
+    assert finish(robot).reason is None
+    assert robot.seen.placed == (Placed(1, 5, 0, 0),)
+
+
 def test_cancel_without_an_order_changes_nothing() -> None:
     robot = Robot(BOARD)
     robot.cancel()

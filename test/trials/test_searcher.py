@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from builders import NEVER_SOLVED, spec
 from parts import (
@@ -35,6 +37,7 @@ from blocks_planning.trials.messages import (
     WorldState,
 )
 from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.trials.status import TrialStatus
 
 
 def test_searcher_solves_what_is_asked_once() -> None:
@@ -94,6 +97,13 @@ def test_searcher_that_has_forgotten_everything_goes_on(trial: TrialSpec, order:
 def test_searcher_that_is_reminded_sends_its_placement_again() -> None:
     memory, said = tell(searcher, [START, STATES[0], *ANSWERS[:6], CHOSEN[0]])
     assert searcher.step(memory, Remind(TRIAL.trial_id)) == (memory, tuple(only(PlaceBlock, said)))
+
+
+def test_searcher_orders_nothing_on_a_board_that_has_collapsed() -> None:
+    """Its blocks may stand as the plan expects: what fell is not among them."""
+    collapsed = replace(STATES[0], status=TrialStatus.COLLAPSED)
+    _, said = tell(searcher, [START, collapsed, *ANSWERS[:6], CHOSEN[0]])
+    assert only(PlaceBlock, said) == []
 
 
 def test_searcher_places_nothing_where_no_subgoal_leads_on() -> None:
