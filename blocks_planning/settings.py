@@ -221,6 +221,7 @@ class Configured:
     """
 
     name: ClassVar[str]
+    is_external: ClassVar[bool] = False  # whether it stands for another program
 
     def __post_init__(self) -> None:
         for attribute, known in described(type(self)):

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 from blocks_planning.board.task import Task
+from blocks_planning.external import refuse_external
 from blocks_planning.families import Registry
+from blocks_planning.search.external import ExternalSearch
 from blocks_planning.search.result import CancelToken, Problem, SolveResult
 from blocks_planning.settings import Configured, setting
 
@@ -25,9 +27,14 @@ EXECUTIONS = ('first', 'path')
 
 
 class Search(Protocol):
-    """An action-level search."""
+    """An action-level search.
+
+    Attributes:
+        is_external: whether another program searches.
+    """
 
     name: ClassVar[str]
+    is_external: ClassVar[bool]
 
     def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
         """Solve a problem within a budget [states].
@@ -267,11 +274,23 @@ class Exact(Configured):
 SEARCHES = Registry(
     'search',
     'blocks_planning.searches',
-    (BreadthFirst, AStar, BestFirst, Beam, TreeSearch, RandomPlacement, Exact),
+    (BreadthFirst, AStar, BestFirst, Beam, TreeSearch, RandomPlacement, Exact, ExternalSearch),
 )
+
+
+def search_names() -> tuple[str, ...]:
+    """The searches that can be run in this process."""
+    return tuple(name for name, cls in SEARCHES.items() if not cls.is_external)
 
 
 def make_search(name: object, values: Mapping[str, object]) -> Search:
     """The search of a name with some settings; see :meth:`.Registry.make`."""
     search: Search = SEARCHES.make(name, values)
+    return search
+
+
+def make_own_search(name: object, values: Mapping[str, object]) -> Search:
+    """A search that can be run in this process; else as :func:`make_search`."""
+    search = make_search(name, values)
+    refuse_external(search=search)
     return search
