@@ -221,6 +221,8 @@ class Configured:
     """
 
     name: ClassVar[str]
+    is_external: ClassVar[bool] = False  # whether it stands for another program
+    plans_on_blocks: ClassVar[bool] = False  # whether a search must know the blocks of a state
 
     def __post_init__(self) -> None:
         for attribute, known in described(type(self)):

@@ -3,7 +3,7 @@
 ::
 
     cli  ->  ros  ->  view | experiments | analysis | robot  ->  fitting  ->  people | study | towers
-         ->  trials  ->  worlds  ->  subgoals  ->  search  ->  board  ->  families
+         ->  trials  ->  worlds  ->  subgoals  ->  search  ->  board  ->  external | families
          ->  extras | located | resources | settings  ->  errors
 """
 
@@ -17,7 +17,7 @@ from source_imports import PACKAGE, Source, imports, package_sources
 LAYERS = [
     {'errors'},
     {'extras', 'located', 'resources', 'settings'},
-    {'families'},
+    {'external', 'families'},
     {'board'},
     {'search'},
     {'subgoals'},

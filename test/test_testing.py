@@ -27,7 +27,12 @@ CHECKS: dict[str, tuple[Any, Check]] = {
     'strategy': (STRATEGIES, testing.check_strategy),
     'world': (WORLDS, testing.check_world),
 }
-MEMBERS = [(family, name) for family, (registry, _) in CHECKS.items() for name in registry]
+MEMBERS = [
+    (family, name)
+    for family, (registry, _) in CHECKS.items()
+    for name, cls in registry.items()
+    if not cls.is_external
+]
 
 
 @pytest.mark.parametrize(('family', 'name'), MEMBERS)

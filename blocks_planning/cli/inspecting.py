@@ -32,7 +32,7 @@ def verify(paths: tuple[Path, ...], rerun: bool) -> int:
     """
     from blocks_planning.trials.verify import differs_from_rerun
 
-    wrong = 0
+    wrong = external = 0
     for path in paths:
         read = _complaints_of_bag if _is_bag(path) else _complaints_of_file
         count = 0
@@ -42,6 +42,7 @@ def verify(paths: tuple[Path, ...], rerun: bool) -> int:
             if record is not None:
                 count += 1
                 place = f'{path}, record {count} ({record.spec.stimulus!r})'
+                external += record.spec.strategy.is_external
                 ended = record.status is not TrialStatus.BUILDING
                 if rerun and ended and not sentences:
                     sentences = list(differs_from_rerun(record))
@@ -49,6 +50,10 @@ def verify(paths: tuple[Path, ...], rerun: bool) -> int:
             for sentence in sentences:
                 click.echo(f'{place}: {sentence}')
         click.echo(f'{path}: {count} records read')
+    if external:
+        click.echo(
+            f'{external} records with the decisions of another program: choices not checked'
+        )
     click.echo('all consistent' if not wrong else f'{wrong} inconsistent')
     return int(bool(wrong))
 

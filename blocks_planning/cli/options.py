@@ -42,7 +42,8 @@ _TYPES: dict[type, Any] = {
 
 def _decides_alone(cls: type[Any]) -> bool:
     """Whether a member of a family needs no person and no other process."""
-    return not getattr(cls, 'asks_person', False) and getattr(cls, 'simulates', True)
+    asks_person = getattr(cls, 'asks_person', False)
+    return not (asks_person or cls.is_external) and getattr(cls, 'simulates', True)
 
 
 def planner_options(command: Command) -> Command:

@@ -28,7 +28,7 @@ from pathlib import Path
 from blocks_planning.experiments.spec import Experiment, SweepSpec
 from blocks_planning.located import Located, read_yaml
 from blocks_planning.resources import resource_directories
-from blocks_planning.search.searches import make_search
+from blocks_planning.search.searches import make_own_search
 from blocks_planning.subgoals.registry import make_planner
 from blocks_planning.trials.script import (
     read_budget,
@@ -73,7 +73,7 @@ def _experiment(item: Located) -> Experiment:
     entries = item.entries('name', 'searches', 'strategies', optional=('budget', 'worlds'))
     return Experiment(
         name=read_text(entries['name']),
-        searches=tuple(read_planners(entries['searches'], make_search)),
+        searches=tuple(read_planners(entries['searches'], make_own_search)),
         strategies=tuple(read_planners(entries['strategies'], make_planner)),
         budget=read_budget(entries),
         worlds=tuple(read_worlds(entries)),

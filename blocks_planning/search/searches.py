@@ -3,9 +3,6 @@
 A search is a frozen dataclass whose fields are its settings (:mod:`blocks_planning.settings`). Its
 ``run(problem, seed, budget, cancel)`` may assume that the problem is neither solved already nor
 without a legal placement: :func:`.solve.solve` checks both first.
-
-A search may set ``plans_on_blocks``. Then its problems say which blocks fill the state, because
-towers with the same cells can differ in more than their cells.
 """
 
 from __future__ import annotations
@@ -15,7 +12,9 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 from blocks_planning.board.task import Task
+from blocks_planning.external import refuse_external
 from blocks_planning.families import Registry
+from blocks_planning.search.external import ExternalSearch
 from blocks_planning.search.result import CancelToken, Problem, SolveResult
 from blocks_planning.settings import Configured, setting
 
@@ -28,9 +27,17 @@ EXECUTIONS = ('first', 'path')
 
 
 class Search(Protocol):
-    """An action-level search."""
+    """An action-level search.
+
+    Attributes:
+        is_external: whether another program searches.
+        plans_on_blocks: whether it must know the blocks that fill a state, because towers with the
+            same cells can differ; then problems and queries name them.
+    """
 
     name: ClassVar[str]
+    is_external: ClassVar[bool]
+    plans_on_blocks: ClassVar[bool]
 
     def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
         """Solve a problem within a budget [states].
@@ -309,12 +316,24 @@ SEARCHES = Registry(
     'blocks_planning.searches',
     (
         *(BreadthFirst, AStar, BestFirst, Beam, TreeSearch, RandomPlacement, Exact),
-        *(StableBreadthFirst, StableRandom),
+        *(StableBreadthFirst, StableRandom, ExternalSearch),
     ),
 )
+
+
+def search_names() -> tuple[str, ...]:
+    """The searches that can be run in this process."""
+    return tuple(name for name, cls in SEARCHES.items() if not cls.is_external)
 
 
 def make_search(name: object, values: Mapping[str, object]) -> Search:
     """The search of a name with some settings; see :meth:`.Registry.make`."""
     search: Search = SEARCHES.make(name, values)
+    return search
+
+
+def make_own_search(name: object, values: Mapping[str, object]) -> Search:
+    """A search that can be run in this process; else as :func:`make_search`."""
+    search = make_search(name, values)
+    refuse_external(search=search)
     return search

@@ -40,7 +40,7 @@ from typing import Any, TypeVar
 from blocks_planning.board.blocks import Library, format_library
 from blocks_planning.located import Located, read_yaml
 from blocks_planning.search.randomness import MAX_SEED
-from blocks_planning.search.searches import make_search
+from blocks_planning.search.searches import make_own_search, make_search
 from blocks_planning.settings import settings_of
 from blocks_planning.study.modes import MODES, Effort, Mode
 from blocks_planning.study.orders import ORDERS
@@ -216,7 +216,7 @@ def _flag(value: Located) -> bool:
 
 
 def _search(value: Located) -> Any:
-    searches = read_planners(Located([value], value.place), make_search)
+    searches = read_planners(Located([value], value.place), make_own_search)
     if len(searches) != 1:
         raise value.fail(f'expected one search, got {len(searches)}')
     return searches[0]

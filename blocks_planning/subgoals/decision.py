@@ -147,10 +147,12 @@ class Strategy(Protocol):
 
     Attributes:
         asks_person: whether its candidates are the proposals of a person.
+        is_external: whether another program decides.
     """
 
     name: ClassVar[str]
     asks_person: ClassVar[bool]
+    is_external: ClassVar[bool]
 
     @property
     def is_blind(self) -> bool:

@@ -13,6 +13,7 @@ from collections.abc import Iterable, MutableMapping
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placement
 from blocks_planning.errors import ConfigurationError
+from blocks_planning.external import refuse_external
 from blocks_planning.search.many import solve_many
 from blocks_planning.search.result import Problem, SolveResult
 from blocks_planning.subgoals.decision import Decision, Query, Situation, Subgoal
@@ -35,7 +36,7 @@ def follow(
         workers: threads that solve the queries of a decision; 1 where processes run side by side.
 
     Raises:
-        ConfigurationError: for a strategy that asks a person, or a world that is observed.
+        ConfigurationError: for a strategy that asks a person, another program, or a world that is observed.
         LimitExceeded: if a problem exceeds a size limit of the search.
     """
     if not spec.world.simulates:
@@ -68,7 +69,7 @@ def run_trials(specs: Iterable[TrialSpec], workers: int = 1) -> list[TrialRecord
         workers: threads that solve the queries of a decision.
 
     Raises:
-        ConfigurationError: for a strategy that asks a person, or a world that is observed.
+        ConfigurationError: for a strategy that asks a person, another program, or a world that is observed.
         LimitExceeded: if a problem exceeds a size limit of the search.
     """
     shared: defaultdict[object, dict[Query, SolveResult]] = defaultdict(dict)
@@ -82,7 +83,7 @@ def decide(spec: TrialSpec, workers: int = 1) -> Decision:
     """The first decision of a trial, on the board on which it begins: all candidates, the choice.
 
     Raises:
-        ConfigurationError: for a strategy that asks a person.
+        ConfigurationError: for a strategy that asks a person, or another program.
         LimitExceeded: if a problem exceeds a size limit of the search.
     """
     answers: dict[Query, SolveResult] = {}
@@ -158,6 +159,7 @@ def _decide(
     answers: MutableMapping[Query, SolveResult],
     workers: int,
 ) -> Decision:
+    refuse_external(strategy=spec.strategy, search=spec.search)
     while True:
         answer = spec.strategy.decide(situation)
         if isinstance(answer, Decision):

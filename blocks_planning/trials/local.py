@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from blocks_planning.external import refuse_external
 from blocks_planning.search.many import solve_many
 from blocks_planning.search.result import CancelToken, Problem, SolveStatus
 from blocks_planning.subgoals.proposals import Proposal
@@ -46,7 +47,11 @@ class LocalTrial:
             spec: the trial.
             cancel: ends it, from another thread, with status ``cancelled``.
             observe: called with every message before the parts receive it.
+
+        Raises:
+            ConfigurationError: for a strategy or search that is another program.
         """
+        refuse_external(strategy=spec.strategy, search=spec.search)
         self.spec = spec
         self._cancel = cancel or CancelToken()
         self._observe = observe

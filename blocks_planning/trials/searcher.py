@@ -57,7 +57,7 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
     trial, state, chosen = memory.trial, memory.state, memory.chosen
     if isinstance(message, TrialStarted):
         same = trial is not None and trial.trial_id == message.trial_id
-        return (memory if same else Memory(message)), ()
+        return (memory if same else _begun(message)), ()
     if trial is None or trial.trial_id != message.trial_id:
         return memory, ()
     match message:
@@ -78,6 +78,11 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
         case Remind():
             return _act(memory)
     return memory, ()
+
+
+def _begun(trial: TrialStarted) -> Memory:
+    """The memory at the start of a trial; nothing if another program does this part."""
+    return Memory() if trial.spec.search.is_external else Memory(trial)
 
 
 def _answer(

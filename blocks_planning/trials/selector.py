@@ -62,7 +62,7 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
     trial, state = memory.trial, memory.state
     if isinstance(message, TrialStarted):
         same = trial is not None and trial.trial_id == message.trial_id
-        return (memory if same else Memory(message)), ()
+        return (memory if same else _begun(message)), ()
     if trial is None or trial.trial_id != message.trial_id:
         return memory, ()
     match message:
@@ -82,6 +82,11 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             unanswered = tuple(query for query in memory.asked if query not in memory.known)
             return memory, _request(trial.trial_id, unanswered)
     return memory, ()
+
+
+def _begun(trial: TrialStarted) -> Memory:
+    """The memory at the start of a trial; nothing if another program does this part."""
+    return Memory() if trial.spec.strategy.is_external else Memory(trial)
 
 
 def reason_against(memory: Memory, proposal: Proposal) -> str:

@@ -70,8 +70,8 @@ class TrialSpec:
 
     @property
     def plans_on_blocks(self) -> bool:
-        """Whether the search must know the blocks that fill a state; most do without."""
-        return getattr(self.search, 'plans_on_blocks', False)
+        """Whether the search must know the blocks that fill a state."""
+        return self.search.plans_on_blocks
 
     def query(self, built: Mask, target: Mask, blocks: Blocks) -> Query:
         """A query from a state; its blocks are in it only if the search plans on them."""

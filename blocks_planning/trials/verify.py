@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.record import TrialRecord
+from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 from blocks_planning.trials.verification.boards import wrong_observations, wrong_status
 from blocks_planning.trials.verification.decisions import wrong_decision
@@ -30,9 +31,14 @@ def contradictions(record: TrialRecord) -> Iterator[str]:
     yield from wrong_execution(record)
 
 
+def can_be_rerun(spec: TrialSpec) -> bool:
+    """Whether a trial can be run again here: nothing was observed, no other program took part."""
+    return spec.world.simulates and not (spec.strategy.is_external or spec.search.is_external)
+
+
 def differs_from_rerun(record: TrialRecord) -> Iterator[str]:
     """The differences from a new run of the trial."""
-    if record.status is TrialStatus.CANCELLED or not record.spec.world.simulates:
+    if record.status is TrialStatus.CANCELLED or not can_be_rerun(record.spec):
         return
     again = run_trial(record.spec, proposals=record.proposals).to_json()
     for key, value in record.to_json().items():

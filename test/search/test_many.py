@@ -24,7 +24,7 @@ from blocks_planning.search.result import (
     SolveResult,
     SolveStatus,
 )
-from blocks_planning.search.searches import SEARCHES, AStar, BreadthFirst, Search, make_search
+from blocks_planning.search.searches import AStar, BreadthFirst, Search, make_search, search_names
 from blocks_planning.search.solve import solve
 from blocks_planning.settings import Configured
 
@@ -54,7 +54,7 @@ def regions_of_one_task(side: int) -> list[Problem]:
 
 
 @pytest.mark.parametrize('workers', [1, 3])
-@pytest.mark.parametrize('name', SEARCHES)
+@pytest.mark.parametrize('name', search_names())
 def test_results_are_those_of_solves_one_by_one(name: str, workers: int) -> None:
     search = make_search(name, {})
     problems = random_problems(20, name) + regions_of_one_task(5)

@@ -12,12 +12,12 @@ from blocks_planning.board.task import Task
 from blocks_planning.errors import ConfigurationError, InvalidInput, LimitExceeded
 from blocks_planning.search import memory
 from blocks_planning.search.result import CancelToken, Problem, SolveResult, SolveStatus
-from blocks_planning.search.searches import SEARCHES, AStar, BreadthFirst, make_search
+from blocks_planning.search.searches import AStar, BreadthFirst, make_search, search_names
 from blocks_planning.search.solve import solve
 
 BOARD = Board(3, 3)
 SINGLE = Task(BOARD, BOARD.full, (Block(1, 1),))
-EVERY_SEARCH = pytest.mark.parametrize('name', SEARCHES)
+EVERY_SEARCH = pytest.mark.parametrize('name', search_names())
 
 
 @EVERY_SEARCH

@@ -17,7 +17,7 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.search.compiled import count_nodes
 from blocks_planning.search.result import CancelToken
-from blocks_planning.search.searches import SEARCHES, make_search
+from blocks_planning.search.searches import SEARCHES, make_search, search_names
 from blocks_planning.search.solve import solve
 from blocks_planning.settings import all_settings
 
@@ -52,14 +52,14 @@ OTHERWISE = {'exact'}
 """Searches whose twin gives other than placements: test_exact.py."""
 CASES = [
     (name, settings)
-    for name in SEARCHES
+    for name in search_names()
     if name not in OTHERWISE
     for settings in SETTINGS.get(name, [])
 ]
 IDS = ['-'.join(map(str, [name, *settings.values()])) for name, settings in CASES]
 
 
-@pytest.mark.parametrize('name', SEARCHES)
+@pytest.mark.parametrize('name', search_names())
 def test_every_search_has_a_twin_and_settings_to_be_held_to_it(name: str) -> None:
     if name in OTHERWISE:
         return

@@ -154,7 +154,7 @@ def test_time_that_can_not_be_is_refused(thinking_s: float) -> None:
 
 
 def test_where_nobody_can_be_asked_only_planners_will_do() -> None:
-    assert set(STRATEGIES) - set(planner_names()) == {'human'}
+    assert set(STRATEGIES) - set(planner_names()) == {'human', 'external'}
     with pytest.raises(
         ConfigurationError, match=rf'one of {", ".join(planner_names())}, got .human'
     ):

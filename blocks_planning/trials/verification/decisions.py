@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from blocks_planning.board.geometry import Mask
 from blocks_planning.search.result import SolveResult, SolveStatus
 from blocks_planning.subgoals.decision import Candidate, Chain, Decision, Query, Situation
 from blocks_planning.subgoals.planner import cells_added, targets_along
@@ -61,6 +62,9 @@ def wrong_decision(record: TrialRecord, index: int) -> Iterator[str]:
     """The errors of a decision, apart from its execution."""
     entry = record.decisions[index]
     situation = situation_of(record, index)
+    if record.spec.strategy.is_external:
+        yield from _wrong_claims(record, entry)
+        return
     chains = list(record.spec.strategy.chains(situation))
     considered = [candidate.regions for candidate in entry.decision.candidates]
     if considered != chains[: len(considered)] or len(considered) != len(chains):
@@ -75,14 +79,37 @@ def wrong_decision(record: TrialRecord, index: int) -> Iterator[str]:
     yield from _wrong_subgoals(record, entry.decision, chains)
 
 
-def _wrong_candidate(
-    record: TrialRecord, candidate: Candidate, situation: Situation
-) -> Iterator[str]:
-    cells = cells_added(candidate.regions, situation.built)
+def _wrong_claims(record: TrialRecord, entry: DecisionRecord) -> Iterator[str]:
+    """The errors of a decision that another program made: of everything but its choice."""
+    decision = entry.decision
+    for number, candidate in enumerate(decision.candidates):
+        for sentence in _wrong_result(candidate, decision.built):
+            yield f'candidate {number}: {sentence}'
+    yield from _wrong_indices(entry)
+    yield from _wrong_costs(record, decision)
+    if decision.sequences < len(decision.candidates):
+        yield f'{len(decision.candidates)} candidates, but only {decision.sequences} sequences'
+    if decision.chosen is None or decision.chosen >= len(decision.candidates):
+        return
+    chain = decision.candidates[decision.chosen].regions
+    yield from _wrong_regions(decision, chain[: max(1, len(decision.subgoals))], len(chain))
+    for number, subgoal in enumerate(decision.subgoals):
+        if subgoal.execute > len(subgoal.placements):
+            yield f'subgoal {number}: executes more placements than its plan has'
+
+
+def _wrong_result(candidate: Candidate, built: Mask) -> Iterator[str]:
+    cells = cells_added(candidate.regions, built)
     if candidate.cells != cells:
         yield f'expected cells {cells}, got {candidate.cells}'
     if candidate.status is SolveStatus.CANCELLED:
         yield 'its solve was cancelled, but then the trial ends without a decision'
+
+
+def _wrong_candidate(
+    record: TrialRecord, candidate: Candidate, situation: Situation
+) -> Iterator[str]:
+    yield from _wrong_result(candidate, situation.built)
     value = None
     if candidate.is_solved:
         value = record.spec.strategy.value(candidate.cells, candidate.planning_cost)
@@ -90,9 +117,7 @@ def _wrong_candidate(
         yield f'expected value {value}, got {candidate.value}'
 
 
-def _wrong_choice(
-    record: TrialRecord, entry: DecisionRecord, situation: Situation
-) -> Iterator[str]:
+def _wrong_indices(entry: DecisionRecord) -> Iterator[str]:
     decision = entry.decision
     if entry.executed > len(decision.subgoals):
         yield f'{entry.executed} subgoals were executed, but there are {len(decision.subgoals)}'
@@ -103,6 +128,14 @@ def _wrong_choice(
             f'chosen index {decision.chosen} is out of range: '
             f'there are {len(decision.candidates)} candidates'
         )
+
+
+def _wrong_choice(
+    record: TrialRecord, entry: DecisionRecord, situation: Situation
+) -> Iterator[str]:
+    decision = entry.decision
+    yield from _wrong_indices(entry)
+    if decision.chosen is not None and decision.chosen >= len(decision.candidates):
         return
     expected = record.spec.strategy.choose(decision.candidates, situation)
     if decision.chosen != expected:
@@ -129,21 +162,28 @@ def _wrong_subgoals(record: TrialRecord, decision: Decision, chains: list[Chain]
     """Subgoals that differ from the chosen chain, or plans with inconsistent costs."""
     if decision.chosen is None or decision.chosen >= len(chains):
         return
-    strategy = record.spec.strategy
-    executed = strategy.subgoals_of(chains[decision.chosen])
+    strategy, chain = record.spec.strategy, chains[decision.chosen]
+    wrong = list(_wrong_regions(decision, strategy.subgoals_of(chain), len(chain)))
+    yield from wrong
+    for number, subgoal in enumerate(decision.subgoals):
+        execute = strategy.execute(len(subgoal.placements))
+        if not wrong and subgoal.execute != execute:
+            yield f'subgoal {number}: expected execute {execute}, got {subgoal.execute}'
+
+
+def _wrong_regions(decision: Decision, executed: Chain, considered: int) -> Iterator[str]:
+    """Subgoals that are not those executed of a chain of ``considered`` regions, or cost more."""
+    assert decision.chosen is not None
     expected = [*zip(executed, targets_along(executed, decision.built), strict=True)]
     if [(one.region, one.target) for one in decision.subgoals] != expected:
         yield 'the subgoals differ from those of the chosen candidate'
         return
     cost = sum(subgoal.planning_cost for subgoal in decision.subgoals)
-    whole = len(executed) == len(chains[decision.chosen])
+    whole = len(executed) == considered
     claimed = decision.candidates[decision.chosen].planning_cost
     if (cost != claimed) if whole else (cost > claimed):
         yield 'the costs of the subgoals do not add up to that of the chosen candidate'
     for number, subgoal in enumerate(decision.subgoals):
-        execute = strategy.execute(len(subgoal.placements))
-        if subgoal.execute != execute:
-            yield (f'subgoal {number}: expected execute {execute}, got {subgoal.execute}')
         if subgoal.solution_cost > subgoal.planning_cost:
             yield f'subgoal {number}: solution_cost is above planning_cost'
         if subgoal.attempts < 1:

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from blocks_planning.board import rules
 from blocks_planning.board.geometry import Mask
-from blocks_planning.board.task import Task
 from blocks_planning.subgoals.decision import Subgoal
 from blocks_planning.trials.execution import History, Progress, history, progress_of
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
+from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 
 _ENDED_FROM_OUTSIDE = (TrialStatus.CANCELLED, TrialStatus.COLLAPSED, TrialStatus.STUCK)
@@ -46,7 +46,7 @@ def _execution(
     start, built = due, decision.built
     for number, subgoal in enumerate(decision.subgoals):
         is_solved = decision.candidates[decision.chosen].is_solved
-        sentence = _wrong_plan(record.spec.task, built, subgoal, is_solved)
+        sentence = _wrong_plan(record.spec, built, subgoal, is_solved)
         if sentence:
             return f'subgoal {number}: {sentence}', due
         if number < entry.executed:
@@ -61,14 +61,17 @@ def _execution(
     return _left_out(record, entry), start
 
 
-def _wrong_plan(task: Task, built: Mask, subgoal: Subgoal, is_solved: bool) -> str:
+def _wrong_plan(spec: TrialSpec, built: Mask, subgoal: Subgoal, is_solved: bool) -> str:
     """Why a plan does not fill its target, or stops before it is stuck; '' if it is correct."""
+    task = spec.task
     for placed in subgoal.placements:
         if rules.drop(task.board, built, placed.placement) != placed:
             return f'block {placed} of its plan is not in the place where it comes to rest'
         built |= rules.cells_of(task.board, placed)
     if is_solved:
         return '' if built == subgoal.target else 'its plan does not fill the target'
+    if spec.search.is_external:
+        return ''
     goes_on = next(rules.legal_placements(task, built, subgoal.target), None) is not None
     return 'its last attempt stops before it is stuck' if goes_on else ''
 
