@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from blocks_planning.fitting.points import ChoicePoint
 
 DEFAULT_MODELS = (
-    *('rows', 'rows-no-cost', 'rows-no-progress'),
+    *('rows', 'rows-2', 'rows-3', 'rows-no-cost', 'rows-no-progress'),
     *('rectangles', 'rectangles-no-cost', 'rectangles-no-progress'),
     'random',
 )
@@ -35,8 +35,9 @@ DEFAULT_MODELS = (
     multiple=True,
     metavar='NAME',
     default=DEFAULT_MODELS,
-    help='Model: a region family (rows, rectangles), optionally followed by -no-cost or '
-    '-no-progress, or random. May be given several times.  [default: all of these]',
+    help='Model: a region family (rows, rectangles), optionally followed by -2 or -3 (subgoals '
+    'to look ahead), then by -no-cost or -no-progress; or random. May be given several times.  '
+    '[default: all of these, without rectangles further ahead]',
 )
 @click.option(
     '--intervals/--no-intervals', default=True, help='Compute profile-likelihood intervals.'

@@ -55,6 +55,11 @@ class ChoiceSet:
         """Index after the last option of each choice, int64 (choices,)."""
         return np.append(self.choice_starts[1:], len(self.option_starts))
 
+    def has_options(self) -> np.ndarray:
+        """Whether anything can be built in the state of each choice, bool (choices,)."""
+        found: np.ndarray = self.cells[self.option_starts[self.choice_starts]] > 0
+        return found
+
     def where(self, keep: np.ndarray) -> ChoiceSet:
         """Some of the choices, in the order given.
 
@@ -125,7 +130,7 @@ def choice_set(
             for sequence in option.sequences:
                 cells.append(sequence.cells)
                 cost.append(sequence.cost)
-        if choice_starts[-1] == len(option_starts):  # arrays have no empty groups
+        if choice_starts[-1] == len(option_starts):  # arrays have no empty groups; see has_options
             option_starts.append(len(cells))
             cells.append(0)
             cost.append(0)

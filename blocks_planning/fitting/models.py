@@ -1,8 +1,8 @@
 """Models of a choice, and the likelihood of choices under them.
 
 A choice is an option with probability proportional to exp(V / temperature), where V is the best
-r - lambda * c of the sequences that begin with it; or, with probability ``lapse``, any region that
-can be drawn. The lapse covers the same regions in every model, so that models with different
+r - lambda * c of the sequences that begin with it; or, with probability ``lapse``, and always if
+there is no option, any region that can be drawn. The lapse covers the same regions in every model, so that models with different
 region families give probabilities to the same choices and can be compared.
 """
 
@@ -115,7 +115,7 @@ def log_likelihoods(choices: ChoiceSet, model: Model, values: Mapping[str, float
     if not model.regions:
         by_chance: np.ndarray = -np.log(choices.drawable)
         return by_chance
-    lapse = values['lapse']
+    lapse = np.where(choices.has_options(), values['lapse'], 1.0)
     by_lapse = lapse / choices.drawable
     is_option = choices.chosen != NONE
     by_value = np.zeros(len(choices))

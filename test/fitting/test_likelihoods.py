@@ -63,14 +63,14 @@ def test_random_model_draws_anything() -> None:
     np.testing.assert_allclose(np.exp(found), 1 / choices.drawable)
 
 
-def test_choice_without_any_buildable_option_is_a_lapse() -> None:
+def test_choice_without_any_buildable_option_is_anything_that_can_be_drawn() -> None:
     class Nothing(MadeUp):
         def _sequences(self, source: object) -> tuple[()]:
             return ()
 
     choices = choice_set(points('a', towers=2), Nothing())
     found = log_likelihoods(choices, parse_model('rows'), VALUES)
-    np.testing.assert_allclose(np.exp(found), VALUES['lapse'] / choices.drawable)
+    np.testing.assert_allclose(np.exp(found), 1 / choices.drawable)
 
 
 def test_huge_values_do_not_overflow() -> None:

@@ -31,5 +31,7 @@ def probability(
         max((exp(per_cell * r + per_state * c) for r, c in sequences), default=0.0)
         for sequences in options
     ]
+    if not any(weights):
+        return 1 / drawable
     meant = weights[chosen] / sum(weights) if chosen is not None and weights[chosen] else 0.0
     return (1 - lapse) * meant + lapse / drawable

@@ -6,6 +6,7 @@ import asyncio
 import errno
 import json
 import os
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from studies import Served, served
 from blocks_planning.study.log import read_events
 from blocks_planning.view.study.seat import REPLACED, TAKEN
 
-from .conftest import KEYS, ask, page_of, state_of
+from .conftest import KEYS, Page, ask, page_of, state_of
 
 SHOWN = {
     *('kind', 'title', 'stage', 'text', 'trial', 'acts', 'step', 'steps', 'may_stop', 'stopped'),
@@ -74,18 +75,33 @@ def test_who_looks_in_from_elsewhere_is_refused(study: Served) -> None:
 
 
 def test_sixteen_browsers_look_and_one_acts(study: Served) -> None:
+    looks = Counter[int]()
+
+    async def look(client: ClientSession, number: int) -> None:
+        """Open the page again and again, and try to act on it."""
+        for _ in range(3):
+            async with client.get(f'{study.base}/') as answer:
+                assert answer.status == 200
+            headers = {'Origin': study.base}
+            async with client.ws_connect(f'{study.base}/live', headers=headers) as other:
+                await other.send_json({'hello': f'{number:016}'})
+                await other.send_json({'act': 'decline', 'number': 0, 'step': 0})
+                assert (await other.receive_json())['kind'] == 'taken'
+            looks[number] += 1
+
+    async def act(page: Page) -> None:
+        await page.go_to(3)
+        await page.act('build', region=['....', '....', '#..#', '#..#'])
+        await page.act('build', region=['####', '####', '#..#', '#..#'])
+
     async def talk(client: ClientSession) -> None:
         async with page_of(study, client) as page:
-            for number in range(16):
-                async with client.ws_connect(
-                    f'{study.base}/live', headers={'Origin': study.base}
-                ) as other:
-                    await other.send_json({'hello': f'{number:016}'})
-                    await other.send_json({'act': 'decline', 'number': 0, 'step': 0})
-                    assert (await other.receive_json())['kind'] == 'taken'
-            assert (await page.act('agree'))['step'] == 1
+            await asyncio.gather(act(page), *(look(client, number) for number in range(16)))
+            assert page.frame['trial']['status'] == 'success'
 
     ask(talk)
+    assert looks == dict.fromkeys(range(16), 3)
+    assert kinds(study).count('arrived') == 1
 
 
 def test_the_same_page_comes_again_before_it_is_known_to_be_gone(study: Served) -> None:
