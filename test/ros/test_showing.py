@@ -80,14 +80,42 @@ def test_joints_and_shapes_are_those_of_the_robot(graph: Graph) -> None:
     assert block.pose.position.x == pytest.approx(0.04, abs=5e-4)
 
 
-def test_messages_are_as_rare_as_they_may_be(graph: Graph) -> None:
+def test_messages_are_rare_in_an_act_and_come_after_it(graph: Graph) -> None:
     stage, robot = Stage(graph), Robot(BOARD)
+    robot.order(Placement(Block(2, 1), 0))
     for now_s in (1.0, 1.0 + PERIOD_S / 2, 1.0 + PERIOD_S):
         robot.step()
         stage.shower.show(robot, now_s)
+    while robot.is_busy:
+        robot.step()
+    stage.shower.show(robot, 1.0 + PERIOD_S)
     other = Robot(BOARD)
-    stage.shower.show(other, 1.0 + PERIOD_S)  # another robot is shown at once
-    assert len(stage.hear('joint_states', 3)) == 3
+    stage.shower.show(other, 1.0 + PERIOD_S)
+    stage.hear('joint_states', 4)
+    assert [list(one.position) for one in stage.heard['joint_states'][2:]] == [
+        one.simulation.joints.tolist() for one in (robot, other)
+    ]
+
+
+def test_viewer_that_comes_late_sees_the_scene_after_the_act(graph: Graph) -> None:
+    node = graph.add(lambda **options: GuardedNode('shower', **options))
+    shower, robot = Shower(node, 'board', 0.0, has_clock=False), Robot(BOARD)
+    robot.order(Placement(Block(2, 1), 0))
+    for now_s in (1.0, 2.0):
+        robot.step()
+        shower.show(robot, now_s)
+    robot.cancel()
+    while robot.is_busy:
+        robot.step()
+    shower.show(robot, 2.0)
+    viewer = graph.add(lambda **options: Node('viewer', **options))
+    heard: list[MarkerArray] = []
+    viewer.create_subscription(
+        MarkerArray, 'robot/markers', heard.append, qos.every_latched_state()
+    )
+    graph.spin_until(lambda: heard)
+    assert len(heard) == 1
+    assert any(box.ns == 'blocks' for box in heard[0].markers)
 
 
 def test_clock_never_goes_back(graph: Graph) -> None:

@@ -79,7 +79,7 @@ class Shower:
         return self._node.create_publisher(kind, '/tf', qos.stream()), kind
 
     def show(self, robot: Robot, now_s: float) -> None:
-        """Publish the robot, unless that was done a short time ago.
+        """Publish the robot: in an act now and then if somebody listens, and after it always.
 
         Args:
             robot: after a step, or another one than before.
@@ -94,13 +94,19 @@ class Shower:
         self.time_s = self._began_s + robot.time
         if self._clock is not None:
             self._clock.publish(Clock(clock=_time(self.time_s)))
-        if is_new or now_s - self._shown_s >= PERIOD_S:
+        is_due = now_s - self._shown_s >= PERIOD_S and self._has_listener
+        if is_new or is_due or not robot.is_busy:
             self._shown_s = now_s
             robot.simulation.refresh()
             self._show(robot)
             if self._pictures is not None and now_s - self._pictured_s >= self._camera_period_s:
                 self._pictured_s = now_s
                 self._take_picture(robot)
+
+    @property
+    def _has_listener(self) -> bool:
+        outlets = (self._joints, self._shapes, self._frames, self._pictures)
+        return any(one.get_subscription_count() for one in outlets if one is not None)
 
     def _header(self, frame_id: str) -> Header:
         if self._clock is None:
