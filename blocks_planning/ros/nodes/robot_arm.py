@@ -153,12 +153,13 @@ class RobotArm(PartNode):
     def _robot_for(self, trial: TrialStarted) -> RobotTrial:
         from blocks_planning.robot.trial import Conditions, RobotTrial
 
-        conditions = Conditions(trial.spec.task.board, self._settings, trial.spec.seed)
+        spec = trial.spec
+        conditions = Conditions(spec.task.board, self._settings, spec.seed, spec.built)
         path = self._folder / (file_name(trial.trial_id) + SUFFIX) if self._folder else None
         try:
             return RobotTrial(trial.trial_id, conditions, path)
         except (InvalidInput, OSError) as error:
-            self.get_logger().warning(f'{error}; the robot begins beside an empty board')
+            self.get_logger().warning(f'{error}; the robot begins anew')
             return RobotTrial(trial.trial_id, conditions)
 
     def _leave(self) -> None:
@@ -217,10 +218,6 @@ class RobotArm(PartNode):
             raise InvalidInput(
                 f'the order is for cells of {request.cell_size} m, those of the robot have '
                 f'{self._settings.cell_m} m: set cell_size of world, or cell_m of robot_arm'
-            )
-        if self.memory.spec.built:
-            raise InvalidInput(
-                'the robot begins beside an empty board, but blocks stand when the trial starts'
             )
 
     def _cancel(self, goal: Any) -> CancelResponse:
