@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from collections import defaultdict
 from typing import Any
 
 import pytest
+import yaml
 from peers import Graph
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import CameraInfo, Image, JointState
+from source_imports import ROOT
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -175,3 +178,16 @@ def test_frames_are_in_that_of_the_board() -> None:
     moved, turned = block.transform.translation, block.transform.rotation
     assert (moved.x, moved.y, moved.z) == (1.0, 2.0, 3.0)
     assert (turned.w, turned.x, turned.y, turned.z) == (0.6, 0.0, 0.8, 0.0)
+
+
+def test_files_for_viewers_show_what_is_published() -> None:
+    rviz = yaml.safe_load((ROOT / 'config' / 'robot.rviz').read_text(encoding='utf-8'))
+    manager = rviz['Visualization Manager']
+    topics = {one['Name']: one['Topic']['Value'] for one in manager['Displays'] if 'Topic' in one}
+    assert topics == {'Robot': '/robot/markers', 'Camera': '/camera/image_raw'}
+    assert manager['Global Options']['Fixed Frame'] == 'board'
+    foxglove = json.loads((ROOT / 'config' / 'robot_foxglove.json').read_text(encoding='utf-8'))
+    panels = foxglove['configById']
+    assert list(panels['3D!robot']['topics']) == ['/robot/markers']
+    assert panels['Image!camera']['imageMode']['imageTopic'] == '/camera/image_raw'
+    assert panels['RawMessages!joints']['topicPath'] == '/joint_states'
