@@ -80,7 +80,7 @@ def build(spec: TrialSpec, settings: RobotSettings) -> Building:
         if isinstance(message, ArmOrder):
             orders.append(message)
 
-    conditions = Conditions(spec.task.board, settings, spec.seed)
+    conditions = Conditions(spec.task.board, settings, spec.seed, spec.built)
     building = Building(LocalTrial(spec, observe=note), RobotTrial(spec.trial_id, conditions))
     building.trial.say(TrialStarted(spec.trial_id, spec))
     while orders:

@@ -11,8 +11,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from blocks_planning.board import rules
-from blocks_planning.board.blocks import Placement
+from blocks_planning.board.blocks import Block, Placed, Placement
 from blocks_planning.board.geometry import Board
 from blocks_planning.errors import InvalidInput
 from blocks_planning.robot import saving
@@ -21,7 +23,7 @@ from blocks_planning.robot.camera import Camera
 from blocks_planning.robot.feeder import Feeder
 from blocks_planning.robot.fitting import Perceived, fit
 from blocks_planning.robot.phases import Progress, Report
-from blocks_planning.robot.scene import TIMESTEP, Body
+from blocks_planning.robot.scene import TIMESTEP, Body, Pose
 from blocks_planning.robot.seeing import see_poses
 from blocks_planning.robot.settings import CAMERA, RobotSettings
 from blocks_planning.robot.simulation import Simulation
@@ -67,6 +69,26 @@ class Robot:
         )
         self._camera = Camera(self.simulation) if settings.perception == CAMERA else None
         self._perceptions = 0
+
+    def begin_with(self, blocks: Iterable[Placed]) -> None:
+        """Put blocks on the empty board, where they are known to be; with ``glue`` they are fixed.
+
+        Args:
+            blocks: supports before what rests on them.
+        """
+        sizes, known = self.simulation.sizes, list[tuple[int, Placed]]()
+        for placed in blocks:
+            block, x = (
+                Block(placed.width, placed.height),
+                sizes.centre(placed.column, placed.width),
+            )
+            number = self.simulation.add(block, x)
+            z = (placed.row + placed.height / 2) * sizes.cell
+            self.simulation.place(number, Pose((x, sizes.middle, z)))
+            known.append((number, placed))
+        if self.settings.glue:
+            self.simulation.glue(number for number, _ in known)
+        self.seen = Perceived(tuple(known))
 
     # --- act --------------------------------------------------------------------------------
 

@@ -44,15 +44,19 @@ class Conditions:
         board: its size.
         settings: of the robot.
         seed: of its noise.
+        built: blocks that stand at the start, supports before what rests on them.
     """
 
     board: Board
     settings: RobotSettings
     seed: int
+    built: Blocks = ()
 
     def robot(self) -> Robot:
-        """A robot beside an empty board."""
-        return Robot(self.board, self.settings, self.seed)
+        """A robot beside the board of the start."""
+        robot = Robot(self.board, self.settings, self.seed)
+        robot.begin_with(self.built)
+        return robot
 
 
 class RobotTrial:
@@ -63,7 +67,7 @@ class RobotTrial:
     """
 
     def __init__(self, trial_id: str, conditions: Conditions, path: Path | None = None) -> None:
-        """Begin beside an empty board, or continue with what is kept.
+        """Begin beside the board of the start, or continue with what is kept.
 
         Args:
             trial_id: of the trial.

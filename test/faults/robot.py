@@ -25,6 +25,7 @@ from graphs import COMMAND, is_alive, node_processes, write_script
 
 from blocks_planning.board.blocks import Placed
 from blocks_planning.board.geometry import Board
+from blocks_planning.errors import RecordError
 from blocks_planning.robot.robot import TICK
 from blocks_planning.robot.settings import RobotSettings
 from blocks_planning.robot.trial import Conditions, RobotTrial
@@ -35,10 +36,12 @@ from blocks_planning.trials.verify import contradictions
 
 STOP_S, STILL = 0.2, 0.005
 """Bounds of a stop: simulated time [s], and speed of a joint half a second later [m/s]."""
-ACT_S = 5.5
+ACT_S = 4.0
 """About how long an act takes, in simulated time [s]."""
 RECOVERY_S = 120.0
-LONGEST_WAIT_S = 3.0
+LONGEST_WAIT_S = 2.0
+STARTING = 0.15
+"""Share of kills that come before the restarted robot has done anything."""
 FIRST, SECOND = Placed(2, 1, 0, 0), Placed(1, 2, 3, 0)
 
 
@@ -149,7 +152,7 @@ def _run_script(report: Report, folder: Path, count: int, chance: random.Random)
             start_new_session=True,
         )
         try:
-            _kill_until_it_ends(report, graph, count, chance)
+            _kill_until_it_ends(report, graph, out, count, chance)
         finally:
             graph.terminate()
             graph.wait()
@@ -160,7 +163,11 @@ def _run_script(report: Report, folder: Path, count: int, chance: random.Random)
 
 
 def _kill_until_it_ends(
-    report: Report, graph: subprocess.Popen[bytes], count: int, chance: random.Random
+    report: Report,
+    graph: subprocess.Popen[bytes],
+    out: Path,
+    count: int,
+    chance: random.Random,
 ) -> None:
     last = 0
 
@@ -169,18 +176,30 @@ def _kill_until_it_ends(
         return pid if pid != last and is_alive(pid) else 0
 
     while report.kills < count and _wait(graph, robot, RECOVERY_S):
-        _wait(graph, lambda: 0, chance.uniform(0, LONGEST_WAIT_S))
+        before = _progress(out)
+        if chance.random() >= STARTING:
+            _wait(graph, lambda before=before: _progress(out) != before, RECOVERY_S)  # type: ignore[misc]
+        _wait(graph, lambda: False, chance.uniform(0, LONGEST_WAIT_S))
         pid = robot()
         if pid:
             with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
                 report.kills += 1
             last = pid
-    if not _wait(graph, lambda: 0, RECOVERY_S) and graph.poll() is None:
+    if not _wait(graph, lambda: False, RECOVERY_S) and graph.poll() is None:
         report.complaints.append(f'the graph has not ended {RECOVERY_S:.0f} s after the last kill')
 
 
-def _wait(graph: subprocess.Popen[bytes], condition: Callable[[], int], seconds: float) -> bool:
+def _progress(out: Path) -> list[tuple[str, int]]:
+    """Something else after every act and every trial."""
+    found = []
+    for path in (out / 'trials.jsonl', *(out / 'robot').glob('*.robot')):
+        with suppress(OSError):
+            found.append((path.name, path.stat().st_mtime_ns))
+    return sorted(found)
+
+
+def _wait(graph: subprocess.Popen[bytes], condition: Callable[[], object], seconds: float) -> bool:
     """Wait until a condition holds; False if the graph ends first, or it takes too long."""
     deadline = time.monotonic() + seconds
     while graph.poll() is None and time.monotonic() < deadline:
@@ -192,7 +211,11 @@ def _wait(graph: subprocess.Popen[bytes], condition: Callable[[], int], seconds:
 
 
 def _judge(report: Report, out: Path, expected: int) -> None:
-    records = list(read_records(out / 'trials.jsonl'))
+    try:
+        records = list(read_records(out / 'trials.jsonl'))
+    except RecordError as error:
+        report.complaints.append(str(error))
+        return
     if len(records) != expected:
         report.complaints.append(f'{out} has {len(records)} records, expected {expected}')
     for record in records:

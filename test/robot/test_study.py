@@ -48,6 +48,19 @@ def test_robot_builds_what_the_planner_orders() -> None:
     assert list(contradictions(record)) == []
 
 
+@pytest.mark.parametrize('glue', [True, False])
+def test_blocks_that_stand_at_the_start_are_built_upon(glue: bool) -> None:
+    placements = build(SPEC, RobotSettings()).record.placements
+    begun = replace(SPEC, built=placements[:2])
+    built = build(begun, RobotSettings(glue=glue))
+    assert built.record.status is TrialStatus.SUCCESS
+    assert built.record.placements[:2] == placements[:2]
+    assert built.score.is_perfect
+    bodies = built.robot.robot.simulation.bodies
+    assert [body.fixed for body in bodies[:2]] == [glue, glue]
+    assert list(contradictions(built.record)) == []
+
+
 @pytest.mark.parametrize(
     ('code', 'times', 'reason'),
     [

@@ -24,12 +24,14 @@ from peers import Graph
 from rclpy.action.client import ActionClient
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
 
 from blocks_planning.board.blocks import Placed
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.ros.nodes import subgoal_selector, world
 from blocks_planning.ros.nodes.action_searcher import ActionSearcher
 from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
+from blocks_planning.ros.wire import qos
 from blocks_planning.ros.wire.conversions.place import order_to_ros
 from blocks_planning.trials.messages import ArmOrder
 from blocks_planning.trials.reading import read_records
@@ -92,12 +94,16 @@ class Trial:
 
 def test_robot_builds_a_tower_trial_after_trial(graph: Graph, tmp_path: Path) -> None:
     trial = Trial(graph, tmp_path)
+    heard: list[JointState] = []
+    viewer = graph.add(lambda **options: Node('viewer', **options))
+    viewer.create_subscription(JointState, 'joint_states', heard.append, qos.stream())
     for _ in range(2):
         trial.start()
         record = trial.record()
         assert record.status is TrialStatus.SUCCESS
         assert len(record.observations) == record.blocks + 1
     assert list((tmp_path / 'robot').iterdir()) == []
+    assert len({tuple(joints.position) for joints in heard}) > 10
 
 
 def test_cancelled_trial_stops_the_arm_and_the_next_works(graph: Graph, tmp_path: Path) -> None:

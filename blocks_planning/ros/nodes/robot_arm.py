@@ -8,8 +8,9 @@ blocks where they were, and begins the interrupted act again.
 | | |
 |---|---|
 | subscribes | `trial`, `outcome` (latched) |
+| shows | `joint_states`; `robot/markers` (latched); `/tf`, where tf2_msgs is installed; `/clock`, with `publish_clock`; `camera/image_raw` and `camera/camera_info`, with a `camera_period_s` |
 | serves | action `place` |
-| parameters | `remind_period_s`; `frame_id`; `state_dir`: folder of the robot's state; `speed`: simulated seconds per second, 0 for as fast as possible; `glue`; `perception`; `pose_noise_m`; `grip_noise_m`; `cell_m`; `gap_m`; `density`; `friction`; `grip_force_n`: as in docs/robot.md |
+| parameters | `remind_period_s`; `frame_id`; `state_dir`: folder of the robot's state; `speed`: simulated seconds per second, 0 for as fast as possible; `camera_period_s`: least time between two pictures, 0 for none; `publish_clock`: whether simulated time is published; `glue`; `perception`; `pose_noise_m`; `grip_noise_m`; `cell_m`; `gap_m`; `density`; `friction`; `grip_force_n`: as in docs/robot.md |
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from blocks_planning.ros.runtime.journal import file_name
 from blocks_planning.ros.runtime.parameters import Parameter
 from blocks_planning.ros.runtime.part_node import PartNode
 from blocks_planning.ros.runtime.process import run
+from blocks_planning.ros.runtime.showing import Shower
 from blocks_planning.ros.wire.conversions.place import order_from_ros, report_to_ros
 from blocks_planning.ros.wire.graph import ROBOT_ARM
 from blocks_planning.settings import all_settings
@@ -49,6 +51,10 @@ STATE_DIR = Parameter('state_dir', '', 'Folder of the state of the robot; none: 
 SPEED = Parameter(
     'speed', 0.0, 'Simulated seconds per second; 0: as fast as possible.', (0.0, 1000.0)
 )
+CAMERA_PERIOD = Parameter(
+    'camera_period_s', 0.0, 'Least time between two pictures [s]; 0: none.', (0.0, 3600.0)
+)
+PUBLISH_CLOCK = Parameter('publish_clock', False, 'Publish simulated time on /clock.')
 SETTINGS = tuple(
     Parameter(
         one.name,
@@ -92,7 +98,8 @@ class RobotArm(PartNode):
         Raises:
             ConfigurationError: for settings that the robot cannot have.
         """
-        super().__init__(ROBOT_ARM, _Attending(), (STATE_DIR, SPEED, *SETTINGS), **options)
+        parameters = (STATE_DIR, SPEED, CAMERA_PERIOD, PUBLISH_CLOCK, *SETTINGS)
+        super().__init__(ROBOT_ARM, _Attending(), parameters, **options)
         try:
             self._settings = RobotSettings(**{one.name: self.values[one.name] for one in SETTINGS})
         except ConfigurationError as error:
@@ -109,6 +116,12 @@ class RobotArm(PartNode):
         self.robot: RobotTrial | None = None
         self._act: Act | None = None
         self._placed = 0
+        self._shower = Shower(
+            self,
+            self.values['frame_id'],
+            self.values['camera_period_s'],
+            has_clock=self.values['publish_clock'],
+        )
         self._turns = self.create_timer(TICK_S, self._turn, clock=self.steady)
         self._turns.cancel()
         self._server = ActionServer(
@@ -134,17 +147,19 @@ class RobotArm(PartNode):
         trial = self.memory
         if trial is not None and self.robot is None and not trial.spec.world.simulates:
             self.robot = self._robot_for(trial)
+            self._shower.show(self.robot.robot, self.now_s)
         return said
 
     def _robot_for(self, trial: TrialStarted) -> RobotTrial:
         from blocks_planning.robot.trial import Conditions, RobotTrial
 
-        conditions = Conditions(trial.spec.task.board, self._settings, trial.spec.seed)
+        spec = trial.spec
+        conditions = Conditions(spec.task.board, self._settings, spec.seed, spec.built)
         path = self._folder / (file_name(trial.trial_id) + SUFFIX) if self._folder else None
         try:
             return RobotTrial(trial.trial_id, conditions, path)
         except (InvalidInput, OSError) as error:
-            self.get_logger().warning(f'{error}; the robot begins beside an empty board')
+            self.get_logger().warning(f'{error}; the robot begins anew')
             return RobotTrial(trial.trial_id, conditions)
 
     def _leave(self) -> None:
@@ -204,10 +219,6 @@ class RobotArm(PartNode):
                 f'the order is for cells of {request.cell_size} m, those of the robot have '
                 f'{self._settings.cell_m} m: set cell_size of world, or cell_m of robot_arm'
             )
-        if self.memory.spec.built:
-            raise InvalidInput(
-                'the robot begins beside an empty board, but blocks stand when the trial starts'
-            )
 
     def _cancel(self, goal: Any) -> CancelResponse:
         act = self._act
@@ -240,8 +251,9 @@ class RobotArm(PartNode):
                 report = act.order.report(PlacementCode.FAILED, reason=str(error))
             if report is not None:
                 self._finish(act, report)
-                return
+                break
             act.tell(progress, self.now_s)
+        self._shower.show(robot.robot, self.now_s)
 
     def _is_ahead(self, act: Act, robot: RobotTrial) -> bool:
         """Whether the simulation has to wait for the clock."""
