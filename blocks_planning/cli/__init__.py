@@ -17,6 +17,7 @@ from blocks_planning.cli.counting import count, exact
 from blocks_planning.cli.fitting import fit
 from blocks_planning.cli.graph import run
 from blocks_planning.cli.inspecting import draw, verify
+from blocks_planning.cli.lookahead import lookahead
 from blocks_planning.cli.progress import LIMIT_REACHED
 from blocks_planning.cli.reproducing import exact_policy, growth, reproduce
 from blocks_planning.cli.running import solve, watch
@@ -57,6 +58,7 @@ for command in (
     reproduce,
     growth,
     uncertain,
+    lookahead,
     fit,
     study,
 ):

@@ -51,7 +51,9 @@ def verify(paths: tuple[Path, ...], rerun: bool) -> int:
                 click.echo(f'{place}: {sentence}')
         click.echo(f'{path}: {count} records read')
     if external:
-        click.echo(f'{external} records with the decisions of another program: choices not checked')
+        click.echo(
+            f'{external} records with the decisions of another program: choices not checked'
+        )
     click.echo('all consistent' if not wrong else f'{wrong} inconsistent')
     return int(bool(wrong))
 
