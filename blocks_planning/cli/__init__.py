@@ -18,6 +18,7 @@ from blocks_planning.cli.embodiment import robot_study
 from blocks_planning.cli.fitting import fit
 from blocks_planning.cli.graph import run
 from blocks_planning.cli.inspecting import draw, verify
+from blocks_planning.cli.lookahead import lookahead
 from blocks_planning.cli.progress import LIMIT_REACHED
 from blocks_planning.cli.reproducing import exact_policy, growth, reproduce
 from blocks_planning.cli.running import solve, watch
@@ -58,6 +59,7 @@ for command in (
     reproduce,
     growth,
     uncertain,
+    lookahead,
     robot_study,
     fit,
     study,
