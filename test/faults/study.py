@@ -148,9 +148,7 @@ async def take_part(
 
 
 @asynccontextmanager
-async def page_of(
-    client: ClientSession, base: str, key: int
-) -> AsyncIterator[tuple[ClientWebSocketResponse, dict[str, Any]]]:
+async def page_of(client: ClientSession, base: str, key: int) -> AsyncIterator[tuple[Any, Any]]:
     """A page that was just opened, and its first frame; the server may not have missed the last."""
     while True:
         async with client.ws_connect(f'{base}/live') as socket:

@@ -74,6 +74,7 @@ class Announced:
     begun: threading.Event
     name: ClassVar[str] = 'announced'
     is_external: ClassVar[bool] = False
+    plans_on_blocks: ClassVar[bool] = False
 
     def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
         self.begun.set()

@@ -73,7 +73,7 @@ def test_the_part_leaves_the_trial_to_the_program(family: str, part: Any) -> Non
 
 def of_program(family: str, strategy: str = 'scoping') -> TrialRecord:
     """A record as a program would leave it that decides or searches as one of ours does."""
-    record = run_trial(replace(OWN, strategy=make_strategy(strategy, {})))
+    record: TrialRecord = run_trial(replace(OWN, strategy=make_strategy(strategy, {})))
     member = getattr(BY_PROGRAM[family], family)
     return replace(record, spec=replace(record.spec, **{family: member}))
 
