@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from aiohttp import ClientSession, ClientWebSocketResponse, CookieJar
+from aiohttp import ClientSession, CookieJar
 from studies import ARCH, STUDY, TOKEN
 
 from blocks_planning.study.events import EventKind
@@ -160,7 +160,7 @@ async def page_of(client: ClientSession, base: str, key: int) -> AsyncIterator[t
 
 
 async def act_on(
-    socket: ClientWebSocketResponse,
+    socket: Any,
     frame: dict[str, Any],
     someone: Taken,
     process: subprocess.Popen[str],
