@@ -88,8 +88,9 @@ class Behaviour:
 
     @property
     def is_holding(self) -> bool:
-        """Whether the closed fingers hold something."""
-        return moving.is_holding(self.simulation, self.memory.arm)
+        """Whether the closed fingers hold a block that they can carry: it is not glued yet."""
+        is_closed = moving.is_holding(self.simulation, self.memory.arm)
+        return is_closed and not self.simulation.body(self.memory.number).fixed
 
     def step(self) -> Report | None:
         """Simulate one time step; return the report of the act if it has ended."""

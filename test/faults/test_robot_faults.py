@@ -21,6 +21,7 @@ def test_robot_is_safe_after_cancels_at_any_moment() -> None:
     assert 0 < report.slowest_stop_s <= STOP_S
 
 
+@pytest.mark.long
 def test_trials_end_though_the_robot_is_killed(tmp_path: Path) -> None:
     report = Report()
     kill_often(report, tmp_path, count=2, seed=1)

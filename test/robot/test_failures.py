@@ -125,6 +125,17 @@ def test_first_block_may_be_higher_than_the_arm_at_rest() -> None:
     assert robot.seen.placed == (Placed(1, 5, 0, 0),)
 
 
+def test_glued_block_is_not_held_after_a_cancel() -> None:
+    robot = Robot(BOARD)
+    robot.order(FIRST)
+    go_on_until(robot, Phase.RELEASE)
+    robot.cancel()
+    assert finish(robot).reason is Reason.CANCELLED
+    assert robot.held is None
+    assert robot.seen.placed == (Placed(2, 1, 0, 0),)
+    check_next_works(robot)
+
+
 def test_cancel_without_an_order_changes_nothing() -> None:
     robot = Robot(BOARD)
     robot.cancel()
