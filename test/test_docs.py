@@ -29,7 +29,7 @@ def listings(path: Path) -> list[Listing]:
 
 
 def run(command: list[str], folder: Path) -> str:
-    environment = os.environ | {'PYTHONPATH': str(ROOT)}
+    environment = os.environ | {'PYTHONPATH': f'{folder}{os.pathsep}{ROOT}'}
     done = subprocess.run(
         [sys.executable, *command], cwd=folder, env=environment, capture_output=True, text=True
     )
@@ -80,3 +80,45 @@ def test_commands_of_documents_exist(path: Path) -> None:
 
     named = set(re.findall(r'blocks-planning ([a-z][a-z-]*)', path.read_text()))
     assert named <= set(commands.commands)
+
+
+def install_plug_in(folder: Path) -> list[Listing]:
+    """Write the package of docs/plug_ins.md, as installed; return the other listings."""
+    others = []
+    for listing in listings(ROOT / 'docs' / 'plug_ins.md'):
+        if listing.file:
+            (folder / listing.file).write_text(listing.text)
+        else:
+            others.append(listing)
+    points = re.findall(
+        r"^\[project\.entry-points\.'(\S+)'\]\n(\w+ = )'(\S+)'$",
+        (folder / 'pyproject.toml').read_text(),
+        re.M,
+    )
+    info = folder / 'my_planners-1.0.dist-info'
+    info.mkdir()
+    (info / 'METADATA').write_text('Metadata-Version: 2.1\nName: my-planners\nVersion: 1.0\n')
+    lines = [f'[{group}]\n{name}{place}\n' for group, name, place in points]
+    assert len(lines) == 2
+    (info / 'entry_points.txt').write_text(''.join(lines))
+    return others
+
+
+def test_page_about_plug_ins_can_be_followed(tmp_path: Path) -> None:
+    python, bash = install_plug_in(tmp_path)
+    assert (python.kind, bash.kind) == ('python', 'bash')
+    assert len(listed_lines(tmp_path / 'my_planners.py')) < 60
+    run(['-c', python.text], tmp_path)
+    solving, verifying = bash.text.splitlines()
+    command, _, file = solving.partition(' > ')
+    said = run(['-m', 'blocks_planning.cli', *shlex.split(command)[1:]], tmp_path)
+    (tmp_path / file).write_text(said)
+    record = json.loads(said)
+    assert (record['strategy'], record['search']) == ('thrifty', 'largest_first')
+    assert record['status'] == 'success'
+    said = run(['-m', 'blocks_planning.cli', *shlex.split(verifying)[1:]], tmp_path)
+    assert said.endswith('all consistent\n')
+
+
+def listed_lines(path: Path) -> list[str]:
+    return [line for line in path.read_text().splitlines() if line.strip()]

@@ -37,6 +37,8 @@ def _panel(panel: Axes, cells: list[dict[str, Any]]) -> None:
     for family, colour in _FAMILIES.items():
         for number, lam in enumerate(lambdas):
             mine = [c for c in cells if c['family'] == family and c['lambda'] == lam]
+            if not mine:
+                continue
             mine.sort(key=lambda cell: cell['horizon'])
             x, y = ([cell[name]['mean'] for cell in mine] for name in ('states', 'success'))
             label = f'{family}, lambda {lam:g}'

@@ -96,6 +96,14 @@ class ProposalMade:
 
 
 @dataclass(frozen=True)
+class DecisionFailed:
+    """No decision can be made: it would exceed a limit. The trial has to end; ``reason`` says why."""
+
+    trial_id: str
+    reason: str
+
+
+@dataclass(frozen=True)
 class PlanMade:
     """The placements that will be carried out for a subgoal, for viewers."""
 
@@ -270,6 +278,6 @@ class Remind:
 
 Message: TypeAlias = (
     'TrialStarted | WorldState | SearchRequest | SearchAnswer | SubgoalChosen | Solve | '
-    'ProposalMade | PlanMade | PlaceBlock | PlacementOutcome | ArmOrder | ArmReport | '
+    'ProposalMade | DecisionFailed | PlanMade | PlaceBlock | PlacementOutcome | ArmOrder | ArmReport | '
     'Held | CancelTrial | TrialEnded | Remind'
 )

@@ -8,6 +8,7 @@ from blocks_planning.trials.cutting import begun
 from blocks_planning.trials.execution import SubgoalChosen, history
 from blocks_planning.trials.messages import (
     CancelTrial,
+    DecisionFailed,
     Message,
     PlacementOutcome,
     TrialEnded,
@@ -61,7 +62,7 @@ def step(memory: Memory, message: Message) -> tuple[Memory, tuple[Message, ...]]
             memory = replace(memory, state=message)
         case SubgoalChosen() if chosen is None or message.sequence > chosen.sequence:
             memory = replace(memory, chosen=message)
-        case CancelTrial(_, reason):
+        case CancelTrial(_, reason) | DecisionFailed(_, reason):
             return _cancelled(memory, trial.trial_id, reason)
         case PlacementOutcome(sequence=at, failed=True) if state and at == state.sequence:
             return _cancelled(memory, trial.trial_id, message.sentence)

@@ -11,19 +11,40 @@ from __future__ import annotations
 
 from typing import Any
 
+from blocks_planning.errors import LimitExceeded
 from blocks_planning.ros.runtime.part_node import PartNode
 from blocks_planning.ros.runtime.process import run
+from blocks_planning.ros.wire.conversions.decisions import failed_to_ros
 from blocks_planning.ros.wire.graph import SUBGOAL_SELECTOR
+from blocks_planning.ros.wire.topics import SUBGOAL
 from blocks_planning.trials import selector
-from blocks_planning.trials.messages import Message, ProposalMade
+from blocks_planning.trials.messages import DecisionFailed, Message, ProposalMade, TrialEnded
 
 
 class SubgoalSelector(PartNode):
-    """The selector; it reports why a proposal is refused."""
+    """The selector; it reports why a proposal is refused, and why no decision can be made."""
 
     def __init__(self, **options: Any) -> None:
         """See :class:`PartNode`."""
         super().__init__(SUBGOAL_SELECTOR, selector, **options)
+        self._failed: str | None = None
+
+    def advance(self, message: Message) -> tuple[Message, ...]:
+        """See :class:`PartNode`. If a decision exceeds a limit, its trial goes no further here."""
+        if isinstance(message, TrialEnded):
+            self._failed = None
+        elif message.trial_id == self._failed:
+            return ()
+        try:
+            return super().advance(message)
+        except LimitExceeded as error:
+            self._failed = message.trial_id
+            return (DecisionFailed(message.trial_id, str(error)),)
+
+    def perform(self, message: Message) -> None:
+        """Publish that no decision can be made."""
+        assert isinstance(message, DecisionFailed)
+        self.publish(SUBGOAL, failed_to_ros(message))
 
     def receive(self, message: Message) -> None:
         """See :class:`PartNode`."""

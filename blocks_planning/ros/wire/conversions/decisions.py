@@ -31,7 +31,7 @@ from blocks_planning.subgoals.decision import Candidate, Decision, Subgoal
 from blocks_planning.subgoals.proposals import MOST_PROPOSALS
 from blocks_planning.subgoals.regions import Label, Region
 from blocks_planning.trials.execution import SubgoalChosen
-from blocks_planning.trials.messages import ProposalMade
+from blocks_planning.trials.messages import DecisionFailed, ProposalMade
 from blocks_planning.trials.record import DecisionRecord, regions_of
 from blocks_planning.trials.version2 import MAX_LABEL_NUMBERS
 
@@ -57,8 +57,18 @@ def subgoal_to_ros(board: Board, message: SubgoalChosen) -> ros.Subgoal:
     )
 
 
-def subgoal_from_ros(board: Board, message: ros.Subgoal) -> SubgoalChosen:
-    """See :class:`SubgoalChosen`."""
+def failed_to_ros(message: DecisionFailed) -> ros.Subgoal:
+    """See :class:`DecisionFailed`."""
+    status = _STATUS.STATUS_LIMIT_EXCEEDED
+    return ros.Subgoal(trial_id=message.trial_id, status=status, reason=message.reason)
+
+
+def subgoal_from_ros(board: Board, message: ros.Subgoal) -> SubgoalChosen | DecisionFailed:
+    """See :class:`SubgoalChosen` and :class:`DecisionFailed`."""
+    if message.status == _STATUS.STATUS_LIMIT_EXCEEDED:
+        if not message.reason:
+            raise refuse('reason', '', 'a sentence that says which limit would be exceeded')
+        return DecisionFailed(message.trial_id, message.reason)
     bounded(message.decisions, 'decisions', 1, MOST_OBSERVATIONS)
     bounded(message.proposals, 'proposals', 0, MOST_PROPOSALS * len(message.decisions))
     chosen = SubgoalChosen(
