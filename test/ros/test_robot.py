@@ -103,7 +103,7 @@ def test_robot_builds_a_tower_trial_after_trial(graph: Graph, tmp_path: Path) ->
         assert record.status is TrialStatus.SUCCESS
         assert len(record.observations) == record.blocks + 1
     assert list((tmp_path / 'robot').iterdir()) == []
-    assert len({tuple(joints.position) for joints in heard}) > 10
+    assert len({tuple(joints.position) for joints in heard}) > 5
 
 
 def test_cancelled_trial_stops_the_arm_and_the_next_works(graph: Graph, tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from blocks_planning.robot.rendering import Painter
     from blocks_planning.robot.robot import Robot
 
-PERIOD_S = 0.05
+PERIOD_S = 0.1
 """Least time between two messages of a topic [s]."""
 CAMERA = 'camera'
 WIDTH, HEIGHT = 440, 400
