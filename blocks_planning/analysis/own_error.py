@@ -8,7 +8,7 @@ after the other, for all silhouettes together.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,6 +44,20 @@ def totals_of(trials: pd.DataFrame, measure: str, seeds: Sequence[int]) -> Total
 def error_of_mean(totals: Totals) -> float:
     """Standard error of the mean over silhouettes of their means; nan with fewer than two seeds."""
     return _jackknife(_means_without_a_seed(_left_out(totals)))
+
+
+def own_mean(trials: pd.DataFrame, measure: str, seeds: Sequence[int]) -> dict[str, Any]:
+    """Our mean over silhouettes and its standard error, as ``mean`` and ``se``; None without any.
+
+    Success is over all trials, anything else over successful ones.
+    """
+    chosen = trials if measure == 'success' else trials[trials['success']]
+    by_tower = chosen.groupby('stimulus', observed=True)[measure].mean()
+    error = error_of_mean(totals_of(trials, measure, seeds))
+    return {
+        'mean': float(by_tower.mean()) if len(by_tower) else None,
+        'se': None if pd.isna(error) else error,
+    }
 
 
 def error_of_difference(first: Totals, second: Totals) -> float:

@@ -13,6 +13,7 @@ from blocks_planning.analysis.behaviour.section import (
     compare_behaviour,
     section_content,
 )
+from blocks_planning.analysis.beyond import beyond_rows
 from blocks_planning.analysis.comparing import compare, count_verdicts, ratio_text
 from blocks_planning.analysis.paper_file import the_paper
 from blocks_planning.analysis.people import compare_people
@@ -42,6 +43,7 @@ MAIN = PRESETS[0]
 
 def write_report(
     sweep: Path,
+    beyond: Path,
     folder: Path,
     exact: list[dict[str, Any]],
     sizes: list[dict[str, Any]],
@@ -51,6 +53,7 @@ def write_report(
 
     Args:
         sweep: folder of the sweep.
+        beyond: folder of the sweep of searches beyond the paper; see :func:`beyond_rows`.
         folder: where to write.
         exact: rows of exact values of single attempts; see :func:`add_exact`.
         sizes: a row for each tower; see :func:`.sizes.size_table`.
@@ -60,7 +63,7 @@ def write_report(
         The content of ``results.json``.
 
     Raises:
-        InvalidInput: if the sweep has no tables.
+        InvalidInput: if a sweep has no tables.
     """
     trials = read_trials(sweep)
     presets = {name: summarise(trials, name) for name in PRESETS}
@@ -72,7 +75,7 @@ def write_report(
     behaviour = compare_behaviour(sweep, MAIN)
     figures = _figures(presets, trials, read_decisions(sweep)) | behaviour_figures(behaviour)
     paths = {name: save_figure(fig, folder / 'figures', name) for name, fig in figures.items()}
-    switched = switch_rows(trials)
+    switched, other_searches = switch_rows(trials), beyond_rows(beyond)
     written = {
         **presets[MAIN],
         'preset': MAIN,
@@ -81,6 +84,7 @@ def write_report(
         'sizes': sizes,
         'switches': switched,
         'behaviour': behaviour,
+        'beyond': other_searches,
     }
     text = json.dumps(written, indent=1, allow_nan=False)
     (folder / 'results.json').write_text(text + '\n', encoding='utf-8')
@@ -96,6 +100,7 @@ def write_report(
         sizes=sizes,
         sample=_sample(trials),
         behaviour=section_content(behaviour),
+        beyond=other_searches,
         exact_budget=exact[0]['budget'] if exact else 0,
     )
     (folder / 'report.html').write_text(html, encoding='utf-8')

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from blocks_planning.analysis.own_error import error_of_mean, totals_of
+from blocks_planning.analysis.own_error import own_mean
 from blocks_planning.analysis.paper_file import the_paper
 from blocks_planning.analysis.style import SEARCH_NAMES
 from blocks_planning.analysis.trials import SEARCH_SETTINGS, with_settings
@@ -85,7 +85,7 @@ def switch_rows(trials: pd.DataFrame) -> list[dict[str, Any]]:
                     'settings': preset,
                     'commit': commit,
                     'lambdas': len(shared),
-                    **{measure: _mean(chosen, measure, seeds) for measure in SWITCHED},
+                    **{measure: own_mean(chosen, measure, seeds) for measure in SWITCHED},
                 }
             )
     return rows
@@ -103,14 +103,3 @@ def _shared_lambdas(parts: list[pd.DataFrame]) -> set[float]:
     """The values of lambda that every part with trials has [cells / state]."""
     values = [set(part['lambda'].round(9)) for part in parts if len(part)]
     return set.intersection(*values) if values else set()
-
-
-def _mean(trials: pd.DataFrame, measure: str, seeds: list[int]) -> dict[str, Any]:
-    """Our mean over silhouettes, with its standard error."""
-    chosen = trials if measure == 'success' else trials[trials['success']]
-    by_tower = chosen.groupby('stimulus', observed=True)[measure].mean()
-    error = error_of_mean(totals_of(trials, measure, seeds))
-    return {
-        'mean': float(by_tower.mean()) if len(by_tower) else None,
-        'se': None if pd.isna(error) else error,
-    }

@@ -73,6 +73,30 @@ def test_results_have_the_structure_that_readers_rely_on(results: Any) -> None:
     assert all(size['states'] > size['cells'] for size in results['sizes'])
 
 
+def test_other_searches_have_the_numbers_of_their_trials(folder: Path, results: Any) -> None:
+    """Every trial is in one row, and its means are those of its trials."""
+    trials = pd.read_parquet(folder / 'beyond' / 'trials.parquet')
+    assert len(results['beyond']) == 8
+    counted = 0
+    for row in results['beyond']:
+        chosen = trials[(trials['search'].astype(str) == row['search']).to_numpy(bool)]
+        for name, value in row['settings'].items():
+            chosen = chosen[(chosen[name] == value).to_numpy(bool)]
+        counted += len(chosen)
+        won = chosen[(chosen['status'] == 'success').to_numpy(bool)]
+        assert row['success']['mean'] == pytest.approx(len(won) / len(chosen))
+        means = [
+            part['solution_cost'].mean()
+            for _, part in won.groupby('stimulus', observed=True)
+            if len(part)
+        ]
+        expected = float(np.mean(means)) if means else None
+        assert row['states_evaluated']['mean'] == pytest.approx(expected)
+        assert row['all_attempts']['mean'] == pytest.approx(chosen['action_planning_cost'].mean())
+    assert counted == len(trials)
+    assert {row['search'] for row in results['beyond']} == {'bfs', 'beam', 'mcts'}
+
+
 def test_exact_values_stand_beside_the_sampled_ones(results: Any) -> None:
     for row in results['table1']:
         if row['search'] == 'astar':
