@@ -99,8 +99,11 @@ def solve_stable(
     start = _Tower(problem.built, blocks)
     if start.built == problem.region:
         return SolveResult(SolveStatus.SOLVED)
-    if not finder.has_child(start):
-        return SolveResult(SolveStatus.UNSOLVABLE_PROVEN)
+    try:
+        if not finder.has_child(start):
+            return SolveResult(SolveStatus.UNSOLVABLE_PROVEN)
+    except _Cancelled:
+        return SolveResult(SolveStatus.CANCELLED)
     return _attempts(finder, start, seed, budget)
 
 

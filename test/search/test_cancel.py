@@ -50,6 +50,8 @@ SEARCHES = {
     'mcts': make_search('mcts', {'iterations': MAX_ITERATIONS}),
     'mcts, many': make_search('mcts', {'iterations': 1}),
     'random': make_search('random', {}),
+    'stable_bfs': make_search('stable_bfs', {'depth': 12}),
+    'stable_random': make_search('stable_random', {}),
 }
 
 

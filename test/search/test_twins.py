@@ -48,8 +48,8 @@ SETTINGS: dict[str, list[dict[str, Any]]] = {
     ],
 }
 """The settings with which each search is held to its twin."""
-OTHERWISE = {'exact'}
-"""Searches whose twin gives other than placements: test_exact.py."""
+OTHERWISE = {'exact', 'stable_bfs', 'stable_random'}
+"""Searches that are held to other twins: test_exact.py, test_stable.py."""
 CASES = [
     (name, settings)
     for name in search_names()
