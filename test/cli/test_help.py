@@ -51,7 +51,8 @@ def test_example_is_understood(example: str) -> None:
         for name in sorted(COMMANDS, reverse=True)
         if words[: len(name.split())] == name.split()
     )
-    COMMANDS[name].make_context(name, words[len(name.split()) :])
+    above = click.Context(commands, **commands.context_settings)  # or the options of help differ
+    COMMANDS[name].make_context(name, words[len(name.split()) :], parent=above)
 
 
 def test_help_describes_a_setting_in_the_words_of_each_member(run: Run) -> None:
