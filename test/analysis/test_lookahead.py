@@ -10,14 +10,14 @@ import pytest
 from click.testing import CliRunner
 
 from blocks_planning.analysis.lookahead import answers, read_lookahead, summarise
-from blocks_planning.cli.lookahead import lookahead
+from blocks_planning.cli import commands
 
 
 @pytest.fixture(scope='module')
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp('lookahead')
-    arguments = ['--quick', '--workers', '1', '--out', str(folder)]
-    done = CliRunner().invoke(lookahead, arguments, catch_exceptions=False)
+    arguments = ['lookahead', '--quick', '--workers', '1', '--out', str(folder)]
+    done = CliRunner().invoke(commands, arguments, catch_exceptions=False)
     assert done.exit_code == 0, done.output
     assert 'needs the fewest states' in done.output
     return folder

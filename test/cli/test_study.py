@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 from source_imports import ROOT
 
-from blocks_planning.cli.study import study
+from blocks_planning.cli import commands
 from blocks_planning.errors import ConfigurationError
 from blocks_planning.study.desk import Desk
 from blocks_planning.study.spec import read_study
@@ -17,7 +17,7 @@ EXAMPLE = ROOT / 'config' / 'studies' / 'example.yaml'
 
 
 def run(*words: str | Path) -> str:
-    done = CliRunner().invoke(study, [str(word) for word in words], catch_exceptions=False)
+    done = CliRunner().invoke(commands, ['study', *map(str, words)], catch_exceptions=False)
     assert done.exit_code == 0, done.output
     return done.output
 
