@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import base64
-import json
 from pathlib import Path
 from typing import Any
 
 from blocks_planning.analysis.embodied import Row, answers, summarise
-from blocks_planning.analysis.style import COLOURS, error_bars, new_figure, save_figure, styled
+from blocks_planning.analysis.pages import write_page
+from blocks_planning.analysis.style import COLOURS, error_bars, new_figure, styled
 from blocks_planning.extras import extra
 
 with extra('figures'):
-    from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -38,20 +36,7 @@ def write_embodied(rows: list[Row], folder: Path, notes: list[str]) -> dict[str,
     """
     results = summarise(rows)
     results['answers'] = answers(results)
-    picture = save_figure(embodied_figure(results), folder / 'figures', 'robot')
-    text = json.dumps(results, indent=1, allow_nan=False)
-    (folder / 'results.json').write_text(text + '\n', encoding='utf-8')
-    environment = Environment(
-        loader=PackageLoader('blocks_planning.analysis', 'templates'),
-        autoescape=select_autoescape(['html']),
-        undefined=StrictUndefined,
-    )
-    html = environment.get_template('embodied.html').render(
-        results=results,
-        notes=notes,
-        figure='data:image/svg+xml;base64,' + base64.b64encode(picture.read_bytes()).decode(),
-    )
-    (folder / 'report.html').write_text(html, encoding='utf-8')
+    write_page(folder, 'embodied.html', results, {'robot': embodied_figure(results)}, notes=notes)
     return results
 
 

@@ -11,10 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from blocks_planning.analysis.trials import read_trials
-from blocks_planning.analysis.uncertainty import ByTower, Resampling
+from blocks_planning.analysis.trials import read_measured
+from blocks_planning.analysis.uncertainty import Resampling, table_of
 from blocks_planning.extras import extra
 
 with extra('experiments'):
@@ -25,24 +23,13 @@ _ALONE = 'none', 'full'
 
 
 def read_lookahead(folder: Path) -> pd.DataFrame:
-    """The trials of a finished sweep, with columns ``planner``, ``states`` and ``decisions``.
-
-    ``states`` counts all that a trial evaluated, ``decisions`` its decisions.
+    """The trials of a finished sweep as :func:`.trials.read_measured`, with a column ``planner``.
 
     Raises:
         InvalidInput: if the folder has no finished sweep.
     """
-    trials = read_trials(folder)
-    columns = ['trial_id', 'considered']
-    decisions = pd.read_parquet(folder / 'decisions.parquet', columns=columns)
-    by_trial = decisions.groupby('trial_id', observed=True)['considered']
-    return trials.assign(
-        planner=[_planner(row) for row in trials.to_dict('records')],
-        stimulus=trials['stimulus'].astype(str),
-        success=trials['success'].astype(float),
-        decisions=trials['trial_id'].map(by_trial.size()).fillna(0).to_numpy(float),
-        states=trials['trial_id'].map(by_trial.sum()).fillna(0).to_numpy(float),
-    )
+    trials = read_measured(folder)
+    return trials.assign(planner=[_planner(row) for row in trials.to_dict('records')])
 
 
 def _planner(row: dict[str, Any]) -> str:
@@ -72,7 +59,7 @@ def _cells(trials: pd.DataFrame, resampling: Resampling) -> Iterator[dict[str, A
     for (slip, planner), part in trials.groupby(['slip', 'planner'], observed=True):
         first = part.iloc[0]
         found = {
-            name: resampling.over_towers(_by_tower(part, name, resampling)).to_json()
+            name: resampling.over_towers(resampling.by_tower(table_of(part, name))).to_json()
             for name in MEASURES
         }
         success, states = (found[name]['mean'] for name in ('success', 'states'))
@@ -87,11 +74,6 @@ def _cells(trials: pd.DataFrame, resampling: Resampling) -> Iterator[dict[str, A
             'per_success': states / success if success else None,
             'statuses': {str(k): int(v) for k, v in part['status'].value_counts().items() if v},
         }
-
-
-def _by_tower(part: pd.DataFrame, measure: str, resampling: Resampling) -> ByTower:
-    table = part.pivot_table(index='stimulus', columns='seed', values=measure, dropna=False)
-    return resampling.by_tower(np.asarray(table.to_numpy(float)))
 
 
 def _beats(one: dict[str, Any], other: dict[str, Any]) -> bool:

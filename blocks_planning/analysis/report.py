@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import base64
-import json
 from pathlib import Path
 from typing import Any
 
-from blocks_planning.analysis import formats
 from blocks_planning.analysis.behaviour.section import (
     behaviour_figures,
     compare_behaviour,
     section_content,
 )
 from blocks_planning.analysis.beyond import beyond_rows
-from blocks_planning.analysis.comparing import compare, count_verdicts, ratio_text
+from blocks_planning.analysis.comparing import compare, count_verdicts
+from blocks_planning.analysis.pages import write_page
 from blocks_planning.analysis.paper_file import the_paper
 from blocks_planning.analysis.people import compare_people
 from blocks_planning.analysis.people_figure import people_figure
@@ -22,7 +20,6 @@ from blocks_planning.analysis.planner_figures import figure_2, figure_4
 from blocks_planning.analysis.report_tables import switch_rows, table_1_rows
 from blocks_planning.analysis.results import summarise
 from blocks_planning.analysis.stripes import figure_3
-from blocks_planning.analysis.style import save_figure
 from blocks_planning.analysis.trials import (
     PRESETS,
     SEARCH_SETTINGS,
@@ -34,7 +31,6 @@ from blocks_planning.extras import extra
 with extra('experiments'):
     import pandas as pd
 with extra('figures'):
-    from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
     from matplotlib.figure import Figure
 
 MAIN = PRESETS[0]
@@ -73,8 +69,6 @@ def write_report(
         results['claims'] = compared[name]
         results['people'] = compare_people(trials, name)
     behaviour = compare_behaviour(sweep, MAIN)
-    figures = _figures(presets, trials, read_decisions(sweep)) | behaviour_figures(behaviour)
-    paths = {name: save_figure(fig, folder / 'figures', name) for name, fig in figures.items()}
     switched, other_searches = switch_rows(trials), beyond_rows(beyond)
     written = {
         **presets[MAIN],
@@ -86,13 +80,14 @@ def write_report(
         'behaviour': behaviour,
         'beyond': other_searches,
     }
-    text = json.dumps(written, indent=1, allow_nan=False)
-    (folder / 'results.json').write_text(text + '\n', encoding='utf-8')
-    html = _render(
+    write_page(
+        folder,
+        'report.html',
+        written,
+        _figures(presets, trials, read_decisions(sweep)) | behaviour_figures(behaviour),
         paper=the_paper(),
         presets=presets,
         main=MAIN,
-        figures={name: _data_url(path) for name, path in paths.items()},
         notes=notes,
         counts={name: count_verdicts(results['claims']) for name, results in presets.items()},
         table1=table_1_rows(presets),
@@ -103,7 +98,6 @@ def write_report(
         beyond=other_searches,
         exact_budget=exact[0]['budget'] if exact else 0,
     )
-    (folder / 'report.html').write_text(html, encoding='utf-8')
     return written
 
 
@@ -138,27 +132,3 @@ def _sample(trials: pd.DataFrame) -> dict[str, int]:
         'seeds': trials['seed'].nunique(),
         'lambdas': scoping.groupby('experiment', observed=True)['lambda'].nunique().max(),
     }
-
-
-def _data_url(path: Path) -> str:
-    return 'data:image/svg+xml;base64,' + base64.b64encode(path.read_bytes()).decode()
-
-
-def _render(**content: Any) -> str:
-    environment = Environment(
-        loader=PackageLoader('blocks_planning.analysis', 'templates'),
-        autoescape=select_autoescape(['html']),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(
-        number=formats.format_number,
-        interval=formats.format_interval,
-        p=formats.format_p,
-        own=formats.format_own,
-        amount=formats.format_count,
-        number_power=formats.format_power,
-        ratio=ratio_text,
-    )
-    return environment.get_template('report.html').render(**content)

@@ -43,6 +43,26 @@ def read_trials(folder: Path) -> pd.DataFrame:
     return trials
 
 
+def read_measured(folder: Path) -> pd.DataFrame:
+    """The table of trials with measures as float64: ``success``, ``decisions`` and ``states``.
+
+    ``decisions`` is their number in a trial, ``states`` all that the trial evaluated [states].
+
+    Raises:
+        InvalidInput: if the folder has no finished sweep.
+    """
+    trials = read_trials(folder)
+    columns = ['trial_id', 'considered']
+    decisions = pd.read_parquet(folder / 'decisions.parquet', columns=columns)
+    by_trial = decisions.groupby('trial_id', observed=True)['considered']
+    return trials.assign(
+        stimulus=trials['stimulus'].astype(str),
+        success=trials['success'].astype(float),
+        decisions=trials['trial_id'].map(by_trial.size()).fillna(0).to_numpy(float),
+        states=trials['trial_id'].map(by_trial.sum()).fillna(0).to_numpy(float),
+    )
+
+
 def read_decisions(folder: Path) -> pd.DataFrame:
     """The table of decisions of a finished sweep: the columns that figures need."""
     columns = ['trial_id', 'decision', 'tops', 'executed']

@@ -17,7 +17,7 @@ import numpy as np
 
 from blocks_planning.analysis.bootstrap import ITERATIONS, Estimate, estimate_of
 from blocks_planning.analysis.people import read_people
-from blocks_planning.analysis.trials import read_trials
+from blocks_planning.analysis.trials import read_measured
 from blocks_planning.extras import extra
 
 with extra('experiments'):
@@ -41,17 +41,11 @@ def read_uncertain(folder: Path) -> pd.DataFrame:
     Raises:
         InvalidInput: if the folder has no finished sweep.
     """
-    trials = read_trials(folder)
-    columns = ['trial_id', 'considered']
-    decisions = pd.read_parquet(folder / 'decisions.parquet', columns=columns)
-    by_trial = decisions.groupby('trial_id', observed=True)['considered']
+    trials = read_measured(folder)
     return trials.assign(
         planner=[_planner(row) for row in trials.to_dict('records')],
-        stimulus=trials['stimulus'].astype(str),
         collapsed=(trials['status'] == 'collapsed').to_numpy(float),
-        success=trials['success'].astype(float),
-        plans=trials['trial_id'].map(by_trial.size()).fillna(0).to_numpy(float),
-        states=trials['trial_id'].map(by_trial.sum()).fillna(0).to_numpy(float),
+        plans=trials['decisions'],
         blocks_are=trials['world_blocks'].astype(str),
     )
 
@@ -145,7 +139,7 @@ def _same_in_every_seed(values: np.ndarray) -> ByTower:
     return ByTower(values, values[None, :])
 
 
-def _table(trials: pd.DataFrame, measure: str) -> np.ndarray:
+def table_of(trials: pd.DataFrame, measure: str) -> np.ndarray:
     """A measure by tower and seed, both in order, float64 (towers, seeds)."""
     table = trials.pivot_table(index='stimulus', columns='seed', values=measure, dropna=False)
     values: np.ndarray = table.to_numpy(float)
@@ -155,7 +149,7 @@ def _table(trials: pd.DataFrame, measure: str) -> np.ndarray:
 def _cells(trials: pd.DataFrame, best: pd.DataFrame, resampling: Resampling) -> Any:
     for place, part in trials.groupby([*_WORLD, 'planner'], observed=True):
         slip, loss, blocks, planner = place
-        values = {name: resampling.by_tower(_table(part, name)) for name in MEASURES}
+        values = {name: resampling.by_tower(table_of(part, name)) for name in MEASURES}
         if blocks == 'glued':
             optimum = _same_in_every_seed(best[slip].to_numpy(float))
             values['regret'] = optimum.minus(values['success'])
@@ -192,7 +186,7 @@ def _gains(
     at = glued[glued['slip'] == slip]
     near, far = (
         {
-            name: resampling.by_tower(_table(at[at['planner'] == one], name))
+            name: resampling.by_tower(table_of(at[at['planner'] == one], name))
             for name in ('success', 'states')
         }
         for one in (planner, FAR)

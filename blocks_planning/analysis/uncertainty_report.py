@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import base64
-import json
 from pathlib import Path
 from typing import Any
 
-from blocks_planning.analysis.style import save_figure
+from blocks_planning.analysis.pages import write_page
 from blocks_planning.analysis.uncertainty import read_uncertain, summarise
 from blocks_planning.analysis.uncertainty_answers import answers
 from blocks_planning.analysis.uncertainty_figure import loose_figure, uncertainty_figure
-from blocks_planning.extras import extra
-
-with extra('figures'):
-    from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 
 def write_uncertainty(
@@ -37,23 +31,5 @@ def write_uncertainty(
     results = summarise(read_uncertain(sweep), optima)
     results['answers'] = answers(results)
     figures = {'uncertainty': uncertainty_figure(results), 'loose': loose_figure(results)}
-    paths = {name: save_figure(one, folder / 'figures', name) for name, one in figures.items()}
-    text = json.dumps(results, indent=1, allow_nan=False)
-    (folder / 'results.json').write_text(text + '\n', encoding='utf-8')
-    environment = Environment(
-        loader=PackageLoader('blocks_planning.analysis', 'templates'),
-        autoescape=select_autoescape(['html']),
-        undefined=StrictUndefined,
-    )
-    html = environment.get_template('uncertainty.html').render(
-        results=results,
-        answers=results['answers'],
-        notes=notes,
-        figures={name: _data_url(path) for name, path in paths.items()},
-    )
-    (folder / 'report.html').write_text(html, encoding='utf-8')
+    write_page(folder, 'uncertainty.html', results, figures, notes=notes)
     return results
-
-
-def _data_url(path: Path) -> str:
-    return 'data:image/svg+xml;base64,' + base64.b64encode(path.read_bytes()).decode()
