@@ -79,7 +79,7 @@ def _rate(domain: int, seeds: int, way: str) -> tuple[float, float]:
 
 
 class _Looker:
-    """Somebody who looks: reads frames in a thread, and counts them."""
+    """A viewer of the page: reads frames in a thread and counts them."""
 
     def __init__(self) -> None:
         self.frames = 0

@@ -209,8 +209,7 @@ def described(cls: type[Any]) -> tuple[tuple[str, Setting], ...]:
 
 def _described(entry: Field[Any]) -> Setting:
     found: Setting = entry.metadata['setting']
-    name = found.name or entry.name
-    return Setting(**{**vars(found), 'name': name})
+    return Setting(**{**vars(found), 'name': found.name or entry.name})
 
 
 class Configured:

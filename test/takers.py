@@ -37,7 +37,7 @@ def sees(page: Page, selector: str, text: str | re.Pattern[str]) -> None:
 
 
 class Participant:
-    """Somebody who goes through a study on a page, with the mouse."""
+    """A participant who goes through a study on a page with the mouse."""
 
     def __init__(self, page: Page) -> None:
         self.page = page

@@ -15,6 +15,8 @@ from blocks_planning.errors import InvalidInput
 DEFAULT_BUDGET = 100_000
 """The paper's budget b [states]."""
 MAX_BUDGET = (1 << 63) - 1
+MAX_DEPTH = 64
+"""Largest depth of a lookahead [placements]."""
 
 
 class SolveStatus(str, Enum):

@@ -15,10 +15,10 @@ from blocks_planning.board.task import Task
 from blocks_planning.external import refuse_external
 from blocks_planning.families import Registry
 from blocks_planning.search.external import ExternalSearch
-from blocks_planning.search.result import CancelToken, Problem, SolveResult
+from blocks_planning.search.result import MAX_DEPTH, CancelToken, Problem, SolveResult
+from blocks_planning.search.stable import StableBreadthFirst, StableRandom
 from blocks_planning.settings import Configured, setting
 
-MAX_DEPTH = 64
 MAX_ITERATIONS = 1_000_000
 MAX_WIDTH = 1_000_000
 DIVISORS = ('smallest', 'mean', 'largest')
@@ -31,8 +31,7 @@ class Search(Protocol):
 
     Attributes:
         is_external: whether another program searches.
-        plans_on_blocks: whether it must know the blocks that fill a state, because towers with the
-            same cells can differ; then problems and queries name them.
+        plans_on_blocks: whether problems and queries name the blocks that fill a state.
     """
 
     name: ClassVar[str]
@@ -130,43 +129,6 @@ def _iterations() -> Any:
 
 def _execute() -> Any:
     return setting('first', 'Part of an incomplete path that is executed.', choices=EXECUTIONS)
-
-
-@dataclass(frozen=True)
-class StableBreadthFirst(Configured):
-    """Breadth-first lookahead that generates only towers of loose blocks that do not fall.
-
-    Where no child falls, it gives the placements and the cost of bfs. See :mod:`.stable`.
-    """
-
-    name: ClassVar[str] = 'stable_bfs'
-    plans_on_blocks: ClassVar[bool] = True
-    depth: int = setting(
-        3, 'Number of placements to look ahead.', least=1, most=MAX_DEPTH, unit='placements'
-    )
-
-    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
-        """See :class:`Search`."""
-        from blocks_planning.search import stable
-
-        return stable.solve_stable(problem, self.depth, seed, budget, cancel)
-
-
-@dataclass(frozen=True)
-class StableRandom(Configured):
-    """Uniformly drawn placements after which a tower of loose blocks does not fall. Cost 0.
-
-    Where nothing falls, it gives the placements of random. See :mod:`.stable`.
-    """
-
-    name: ClassVar[str] = 'stable_random'
-    plans_on_blocks: ClassVar[bool] = True
-
-    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
-        """See :class:`Search`."""
-        from blocks_planning.search import stable
-
-        return stable.solve_stable(problem, 0, seed, budget, cancel)
 
 
 @dataclass(frozen=True)
@@ -334,6 +296,5 @@ def make_search(name: object, values: Mapping[str, object]) -> Search:
 
 def make_own_search(name: object, values: Mapping[str, object]) -> Search:
     """A search that can be run in this process; else as :func:`make_search`."""
-    search = make_search(name, values)
-    refuse_external(search=search)
+    refuse_external(search=(search := make_search(name, values)))
     return search

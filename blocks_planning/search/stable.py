@@ -11,7 +11,8 @@ searches evaluate tens of millions.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placed
@@ -22,12 +23,13 @@ from blocks_planning.search.randomness import MAX_SEED, Generator, mask_words
 from blocks_planning.search.result import (
     DEFAULT_BUDGET,
     MAX_BUDGET,
+    MAX_DEPTH,
     CancelToken,
     Problem,
     SolveResult,
     SolveStatus,
 )
-from blocks_planning.settings import check_whole
+from blocks_planning.settings import Configured, check_whole, setting
 
 Stays = Callable[[tuple[Placed, ...]], bool]
 """Decides whether a tower of these blocks is stable."""
@@ -59,6 +61,39 @@ class _Choice(NamedTuple):
 
     path: Path
     evaluated: int
+
+
+@dataclass(frozen=True)
+class StableBreadthFirst(Configured):
+    """Breadth-first lookahead that generates only towers of loose blocks that do not fall.
+
+    Where no child falls, it gives the placements and the cost of bfs.
+    """
+
+    name: ClassVar[str] = 'stable_bfs'
+    plans_on_blocks: ClassVar[bool] = True
+    depth: int = setting(
+        3, 'Number of placements to look ahead.', least=1, most=MAX_DEPTH, unit='placements'
+    )
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        """See :class:`.searches.Search`."""
+        return solve_stable(problem, self.depth, seed, budget, cancel)
+
+
+@dataclass(frozen=True)
+class StableRandom(Configured):
+    """Uniformly drawn placements after which a tower of loose blocks does not fall. Cost 0.
+
+    Where nothing falls, it gives the placements of random.
+    """
+
+    name: ClassVar[str] = 'stable_random'
+    plans_on_blocks: ClassVar[bool] = True
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        """See :class:`.searches.Search`."""
+        return solve_stable(problem, 0, seed, budget, cancel)
 
 
 def solve_stable(

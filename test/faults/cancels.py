@@ -107,7 +107,7 @@ class Caller(Node):
 
 
 def cancel_often(folder: Path, count: int, seed: int) -> tuple[list[float], Counter[int]]:
-    """Cancel so many goals; return how long each answer took [s], and their statuses."""
+    """Cancel goals; return the time that each answer took [s], and the statuses."""
     chance = random.Random(seed)
     namespace = f'/cancels_{seed}'
     expected = run_trial(SHORT).action_planning_cost

@@ -68,7 +68,7 @@ class Report:
 
 
 def cancel_often(report: Report, count: int, seed: int) -> None:
-    """Cancel so many orders; the arm must stop, the next order and the next trial must work."""
+    """Cancel ``count`` orders. After each, the arm stops, and the next order and trial work."""
     chance = random.Random(seed)
     for number in range(count):
         settings = RobotSettings(glue=chance.random() < 0.5)

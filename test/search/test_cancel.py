@@ -16,13 +16,13 @@ from blocks_planning.search.compiled import count_nodes
 from blocks_planning.search.exact import analyse
 from blocks_planning.search.result import (
     MAX_BUDGET,
+    MAX_DEPTH,
     CancelToken,
     Problem,
     SolveResult,
     SolveStatus,
 )
 from blocks_planning.search.searches import (
-    MAX_DEPTH,
     MAX_ITERATIONS,
     Search,
     make_search,

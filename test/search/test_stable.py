@@ -18,14 +18,9 @@ from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.errors import ConfigurationError, InvalidInput
 from blocks_planning.search.result import CancelToken, Problem, SolveStatus
-from blocks_planning.search.searches import (
-    BreadthFirst,
-    RandomPlacement,
-    StableBreadthFirst,
-    StableRandom,
-)
+from blocks_planning.search.searches import BreadthFirst, RandomPlacement
 from blocks_planning.search.solve import solve
-from blocks_planning.search.stable import solve_stable
+from blocks_planning.search.stable import StableBreadthFirst, StableRandom, solve_stable
 from blocks_planning.trials.following import follow
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.status import TrialStatus

@@ -48,7 +48,7 @@ def session_of(desk: Desk) -> Session:
 
 
 class Person:
-    """Somebody who takes part."""
+    """A participant."""
 
     def __init__(self, session: Session) -> None:
         self.session = session

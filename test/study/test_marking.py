@@ -36,7 +36,7 @@ def study(study: Study) -> Study:
 
 @pytest.fixture
 def marker(person: Person) -> Person:
-    """Somebody who is asked to mark the parts of the arch."""
+    """A participant whose condition asks for the parts of the arch."""
     person.go_to(StepKind.MARKING)
     return person
 

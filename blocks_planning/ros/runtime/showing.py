@@ -79,7 +79,7 @@ class Shower:
         return self._node.create_publisher(kind, '/tf', qos.stream()), kind
 
     def show(self, robot: Robot, now_s: float) -> None:
-        """Publish the robot: in an act now and then if somebody listens, and after it always.
+        """Publish the robot after each act; during an act only to subscribers, at a limited rate.
 
         Args:
             robot: after a step, or another one than before.

@@ -108,7 +108,7 @@ def test_a_frame_comes_also_when_nothing_is_new(
 def test_frames_are_dropped_and_never_queued(
     served: Served, scoped: Heard, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Somebody who does not read for a while gets the latest then, not all that were missed."""
+    """A page that does not read for a while then gets the latest frame, not every missed one."""
     monkeypatch.setattr(live, 'FRAME_S', 0.0005)
     made = threading.Event()
     count = 0
