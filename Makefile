@@ -25,6 +25,10 @@ export HYPOTHESIS_STORAGE_DIRECTORY := $(CACHE)/hypothesis
 export MYPY_CACHE_DIR := $(CACHE)/mypy
 export RUFF_CACHE_DIR := $(CACHE)/ruff
 export PYTEST_DEBUG_TEMPROOT := $(CACHE)/tmp
+# uv does not compile what it installs: without a cache of bytecode each of the many processes of a
+# graph or a test compiles a few hundred modules again.
+export PYTHONPYCACHEPREFIX := $(CACHE)/python
+unexport PYTHONDONTWRITEBYTECODE
 
 # A sourced ROS installation, or a ROS process of another environment that calls make, must not
 # be mixed into this one.

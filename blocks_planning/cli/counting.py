@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import partial
+from typing import TYPE_CHECKING
 
 import click
 import numpy as np
@@ -18,9 +19,11 @@ from blocks_planning.cli.options import (
     task_of,
 )
 from blocks_planning.cli.progress import LIMIT_REACHED, Job, each, time_limit_option
-from blocks_planning.search.exact import ExactAnswer
 from blocks_planning.search.gauge import Gauge
 from blocks_planning.search.result import CancelToken
+
+if TYPE_CHECKING:
+    from blocks_planning.search.exact import ExactAnswer
 
 
 @click.command(epilog='\b\nExample:\n  blocks-planning count cogsci2021 --depth 5 --json')

@@ -32,8 +32,9 @@ class Around(NamedTuple):
 class Peers:
     """The other nodes of a node's namespace.
 
-    If a node was stopped for longer than its lease and then continues, the middleware finds its
-    publishers and subscriptions again, but not its name. So the name of each endpoint is kept.
+    The middleware finds the publishers and subscriptions of a node before it learns its name. If a
+    node was stopped for longer than its lease and then continues, they are found again, but not the
+    name. So the name of each endpoint is kept.
     """
 
     def __init__(self, node: Node) -> None:
@@ -42,6 +43,7 @@ class Peers:
         self._names: OrderedDict[bytes, tuple[str, str]] = OrderedDict()
         self._counts: list[int] = []
         self._listed_s = 0.0
+        self._all_named = False
         self._listed: defaultdict[str, set[_End]] = defaultdict(set)
 
     def missing(self, names: Iterable[str]) -> list[str]:
@@ -71,7 +73,7 @@ class Peers:
         """The endpoints of each node.
 
         Listing them takes milliseconds, counting them far less: they are listed again when their
-        number has changed, and every ``_FRESH_S``.
+        number has changed, while one has no name yet, and every ``_FRESH_S``.
         """
         counts = [
             count(topic.name)
@@ -79,13 +81,15 @@ class Peers:
             for count in (self._node.count_publishers, self._node.count_subscribers)
         ]
         now_s = time.monotonic()
-        if counts != self._counts or now_s - self._listed_s >= _FRESH_S:
+        is_fresh = counts == self._counts and now_s - self._listed_s < _FRESH_S
+        if not (is_fresh and self._all_named):
             self._counts, self._listed_s = counts, now_s
             self._listed = self._list_ends()
         return self._listed
 
     def _list_ends(self) -> defaultdict[str, set[_End]]:
         found: defaultdict[str, set[_End]] = defaultdict(set)
+        self._all_named = True
         for topic in (*TOPICS, *VIEW_TOPICS):
             name = self._node.resolve_topic_name(topic.name)
             for says, infos in (
@@ -93,6 +97,7 @@ class Peers:
                 (False, self._node.get_subscriptions_info_by_topic(name)),
             ):
                 for node_name, space in map(self._name_of, infos):
+                    self._all_named &= node_name != ''
                     if space == self._node.get_namespace():
                         found[node_name].add(_End(says, topic.name))
         return found
