@@ -101,8 +101,8 @@ class Board:
 
     def rectangle(self, column: Column, row: Row, width: int, height: int) -> Mask:
         """The cells of a rectangle that lies on the board, by its lower left cell."""
-        one_column = ((1 << height) - 1) << self.bit(column, row)
-        return sum(one_column << (step * self.height) for step in range(width))
+        first_cells = ((1 << (width * self.height)) - 1) // ((1 << self.height) - 1)
+        return first_cells * ((1 << height) - 1) << self.bit(column, row)
 
     def rows_up_to(self, mask: Mask) -> int:
         """Number of rows from the ground up to the highest cell of a mask; 0 if it is empty."""
