@@ -12,8 +12,7 @@ from oracles.randomness import attempt_generator
 from oracles.tree import Task as PlainTask
 
 from benchmarks.measure import Figure, best_rate, seconds
-from blocks_planning.board.kernels.compiling import kernel
-from blocks_planning.board.kernels.masks import load, pack
+from blocks_planning.board.kernels.masks import pack
 from blocks_planning.board.stimuli import find_stimuli
 from blocks_planning.board.task import Task
 from blocks_planning.search.compiled import tables_of
@@ -28,20 +27,17 @@ TWIN_TOWERS = (5, 6)  # those with the smallest trees: the twin takes its time
 DEPTH = 4
 
 
-@kernel
-def _decide(search, tables, state, generator, cancel):  # type: ignore[no-untyped-def]
-    root = load(state, 0)  # type: ignore[no-untyped-call]
-    evaluated, _, _ = breadth_first.decide(search, tables, root, 0, generator, cancel)
-    return evaluated
-
-
 def _bfs_decisions(tasks: list[Task]) -> int:
     states = 0
     for task in tasks:
         tables = tables_of(task, task.silhouette)
         search = lookahead.make_search(tables, DEPTH)
-        empty, generator = pack([0], tables.cells), np.zeros(1, np.uint64)
-        states += _decide(search, tables, empty, generator, np.zeros(1, np.uint8))
+        moves, weights = np.zeros((2, task.board.width * len(task.library)), np.int64)
+        empty, cancel = pack([0], tables.cells), np.zeros(1, np.uint8)
+        evaluated, _, _ = breadth_first.choices_from(
+            search, tables, empty, 0, cancel, moves, weights
+        )
+        states += evaluated
     return states
 
 

@@ -21,7 +21,7 @@ from blocks_planning.search.kernels import (
     tree_search,
 )
 from blocks_planning.search.kernels.outcomes import CANCELLED, STUCK
-from blocks_planning.search.kernels.randomness import seed
+from blocks_planning.search.kernels.randomness import key_of, seed
 
 _ATTEMPTS = {
     random_placement.RandomPlacement: random_placement.attempt,
@@ -30,6 +30,8 @@ _ATTEMPTS = {
     beam.Beam: beam.attempt,
     tree_search.TreeSearch: tree_search.attempt,
 }
+_FORGET = {lookahead.BreadthFirst: breadth_first.forget}
+"""How searches that keep something of a problem drop it before another one."""
 
 
 class Conditions(NamedTuple):
@@ -60,6 +62,26 @@ def _attempt(search, tables, shadow, filled, generator, cancel, path):
     return run
 
 
+def begin(search):
+    """Prepare any search for another problem."""
+
+
+@overload(begin)
+def _begin(search):
+    if search.instance_class not in _FORGET:
+
+        def nothing(search):
+            """Such a search keeps nothing."""
+
+        return nothing
+    forget = _FORGET[search.instance_class]
+
+    def run(search):
+        forget(search)
+
+    return run
+
+
 @inlined
 def run_attempts(search, tables, shadow, filled, conditions):
     """Make attempts until one is complete or cancelled, or the budget is reached.
@@ -78,12 +100,14 @@ def run_attempts(search, tables, shadow, filled, conditions):
         (outcome of the last attempt, its number of moves, its states evaluated, states evaluated
         in all attempts, number of attempts)
     """
+    begin(search)
+    key = key_of(conditions.seed_words)
     total = 0
     number = 0
     while True:
         if conditions.cancel[0] != 0:
             return CANCELLED, 0, 0, total, number
-        seed(conditions.generator, conditions.seed_words, number)
+        seed(conditions.generator, key, number)
         outcome, length, cost = attempt(
             search,
             tables,

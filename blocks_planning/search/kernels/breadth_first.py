@@ -6,8 +6,14 @@ The traversal of the tree and the evaluation of its nodes are in :mod:`.lookahea
 from __future__ import annotations
 
 from blocks_planning.board.kernels.compiling import inlined, kernel
-from blocks_planning.board.kernels.masks import load
+from blocks_planning.board.kernels.masks import is_empty, load, lowest, without_lowest
 from blocks_planning.board.kernels.moves import legal_moves
+from blocks_planning.search.kernels.decisions import (
+    finish,
+    forget_decisions,
+    known,
+    write_head,
+)
 from blocks_planning.search.kernels.lookahead import (
     BROKEN_OFF,
     COMPLETE_VALUE,
@@ -21,35 +27,66 @@ from blocks_planning.search.kernels.randomness import below
 
 
 @inlined
-def _elect(search, tables, shadow, generator):
-    """The first placement, as a move, of a uniformly drawn tree node among the best."""
+def _write_choices(search, tables, shadow, place):
+    """Write the best tree nodes by level and first placement; return the place after them."""
+    decisions = search.decisions
+    legal_moves(tables, shadow, search.moves, 0)
+    first = 0
+    for block in range(tables.area.size):
+        places = load(search.moves, block)
+        while not is_empty(places):
+            decisions.move_of[first] = block * tables.cells + lowest(places)
+            first += 1
+            places = without_lowest(places)
     total = 0
     for level in range(search.depth):
         for first in range(search.firsts[0]):
-            total += search.votes[level, first]
-    index = below(generator, total)
-    for level in range(search.depth):
-        for first in range(search.firsts[0]):
-            index -= search.votes[level, first]
-            if index < 0:
-                legal_moves(tables, shadow, search.moves, 0)
-                return move_number(tables, search.moves, first)
-    return -1
+            if search.votes[level, first] > 0:
+                total += search.votes[level, first]
+                decisions.move[place] = decisions.move_of[first]
+                decisions.below[place] = total
+                place += 1
+    return place
 
 
 @inlined
-def decide(search, tables, shadow, filled, generator, cancel):
-    """Look ahead from a state, and choose.
+def _look(search, tables, shadow, filled, cancel):
+    """Look ahead from a state.
 
     Returns:
-        (states evaluated, ending, move). The ending is as in ``look_ahead``; the move is chosen
-        if that is 0 and there is any, else it is -1.
+        (number of the decision, or BROKEN_OFF if cancelled; states evaluated)
     """
+    decisions = search.decisions
     evaluated, ending = look_ahead(search, tables, shadow, filled, cancel)
-    move = -1
-    if ending == 0 and evaluated > 0:
-        move = _elect(search, tables, shadow, generator)
-    return evaluated, ending, move
+    if ending == BROKEN_OFF:
+        return BROKEN_OFF, evaluated
+    number, place = write_head(decisions, shadow, filled, evaluated, ending)
+    if ending > 0:
+        for index in range(ending):
+            decisions.move[place] = search.path[index]
+            place += 1
+    elif evaluated > 0:
+        place = _write_choices(search, tables, shadow, place)
+    finish(decisions, number, place, search.votes.size + search.depth)
+    return number, evaluated
+
+
+@inlined
+def _elect(decisions, number, generator):
+    """The first placement, as a move, of a uniformly drawn tree node among the best; -1 if none."""
+    place, end = decisions.first[number], decisions.first[number + 1]
+    if place == end:
+        return -1
+    index = below(generator, decisions.below[end - 1])
+    while index >= decisions.below[place]:
+        place += 1
+    return decisions.move[place]
+
+
+@inlined
+def forget(search):
+    """Drop what was found in another problem."""
+    forget_decisions(search.decisions)
 
 
 @kernel
@@ -59,17 +96,25 @@ def attempt(search, tables, shadow, filled, generator, cancel, path):
     Returns:
         (outcome, number of moves written to ``path``, states evaluated)
     """
+    decisions = search.decisions
     length = 0
     cost = 0
     while filled < tables.target:
-        evaluated, ending, move = decide(search, tables, shadow, filled, generator, cancel)
+        number = known(decisions, shadow, filled)
+        if number >= 0:
+            evaluated = decisions.evaluated[number]
+        else:
+            number, evaluated = _look(search, tables, shadow, filled, cancel)
         cost += evaluated
-        if ending == BROKEN_OFF:
+        if number < 0:
             return CANCELLED, length, cost
+        ending = decisions.ending[number]
         if ending > 0:
+            place = decisions.first[number]
             for index in range(ending):
-                path[length + index] = search.path[index]
+                path[length + index] = decisions.move[place + index]
             return COMPLETE, length + ending, cost
+        move = _elect(decisions, number, generator)
         if move < 0:
             return STUCK, length, cost
         path[length] = move

@@ -30,6 +30,7 @@ from blocks_planning.board.kernels.masks import (
     without_lowest,
 )
 from blocks_planning.board.kernels.moves import Tables, has_move, legal_moves
+from blocks_planning.search.kernels.decisions import Decisions, make_decisions
 
 COMPLETE_VALUE = 1 << 30
 """The value of a complete state: above every number of filled cells."""
@@ -53,6 +54,7 @@ class BreadthFirst(NamedTuple):
     votes: np.ndarray  # int64 (depth, most children): best tree nodes by depth and first
     best: np.ndarray  # int64 (1,): their value
     firsts: np.ndarray  # int64 (1,): number of first placements
+    decisions: Decisions  # of the problem
 
 
 def make_search(tables: Tables, depth: int, dead_ends_last: bool = True) -> BreadthFirst:
@@ -70,6 +72,7 @@ def make_search(tables: Tables, depth: int, dead_ends_last: bool = True) -> Brea
         votes=np.zeros((depth, blocks * MAX_SIDE), np.int64),
         best=np.zeros(1, np.int64),
         firsts=np.zeros(1, np.int64),
+        decisions=make_decisions(mask_shape, blocks * MAX_SIDE, depth),
     )
 
 

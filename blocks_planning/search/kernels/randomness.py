@@ -23,11 +23,17 @@ def mix(word):
 
 
 @inlined
-def seed(generator, words, attempt):
-    """Seed the generator of an attempt with the uint64 ``words`` (n,), then its number."""
+def key_of(words):
+    """The key of the attempts at a problem from its uint64 ``words`` (n,)."""
     key = _ZERO
     for word in words:
         key = mix((key ^ word) + _GAMMA)
+    return key
+
+
+@inlined
+def seed(generator, key, attempt):
+    """Seed the generator of an attempt with the key of its problem, then its number."""
     generator[0] = mix((key ^ np.uint64(attempt)) + _GAMMA)
 
 
