@@ -36,6 +36,8 @@ Stays = Callable[[tuple[Placed, ...]], bool]
 Path = tuple[Placed, ...]
 
 _DEAD_END = -1
+MOST_LOOKS = 1024
+"""Most states of a problem for which the outcome of looking ahead is kept."""
 
 
 class _Cancelled(Exception):
@@ -60,6 +62,13 @@ class _Choice(NamedTuple):
     """The next step of a search: placements (none if it is stuck), and states evaluated."""
 
     path: Path
+    evaluated: int
+
+
+class _Look(NamedTuple):
+    """What looking ahead from a state gives: the steps to draw from, and states evaluated."""
+
+    steps: tuple[Path, ...]
     evaluated: int
 
 
@@ -176,6 +185,7 @@ class _Finder:
         self._depth = depth
         self._stays = stays
         self._cancel = cancel
+        self._looks: dict[Path, _Look] = {}
 
     def attempt(self, tower: _Tower, generator: Generator) -> tuple[bool, Path, int]:
         """One attempt: whether it filled the region, its placements, and states evaluated."""
@@ -202,25 +212,37 @@ class _Finder:
         return _Choice((legal[generator.below(len(legal))],) if legal else (), 0)
 
     def _look_ahead(self, tower: _Tower, generator: Generator) -> _Choice:
-        """Breadth-first lookahead, as in the compiled search."""
+        """Breadth-first lookahead, as in the compiled search.
+
+        A later attempt that comes to the same state only draws among what was found there.
+        """
+        look = self._looks.get(tower.blocks)
+        if look is None:
+            look = self._look(tower)
+            if len(self._looks) < MOST_LOOKS:
+                self._looks[tower.blocks] = look
+        else:
+            self.evaluated += look.evaluated
+        steps = look.steps
+        return _Choice(steps[generator.below(len(steps))] if steps else (), look.evaluated)
+
+    def _look(self, tower: _Tower) -> _Look:
         level = [_Node(tower, ())]
         seen: list[_Node] = []
         for _ in range(self._depth):
             following: list[_Node] = []
             for node in level:
                 if node.tower.built == self.problem.region:
-                    return _Choice(node.path, len(seen) + len(following))
+                    return _Look((node.path,), len(seen) + len(following))
                 for placed, child in self._children(node.tower):
                     following.append(_Node(child, (*node.path, placed)))
                     self.evaluated += 1
             seen += following
             level = following
-        if not seen:
-            return _Choice((), 0)
         values = [self._value(node.tower) for node in seen]
-        best = max(values)
-        winners = [node for node, value in zip(seen, values, strict=True) if value == best]
-        return _Choice(winners[generator.below(len(winners))].path[:1], len(seen))
+        best = max(values, default=0)
+        winners = (node for node, value in zip(seen, values, strict=True) if value == best)
+        return _Look(tuple(node.path[:1] for node in winners), len(seen))
 
     def _value(self, tower: _Tower) -> int:
         """The value: complete is best, a dead end worst, otherwise the number of cells."""

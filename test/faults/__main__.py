@@ -45,8 +45,10 @@ def main(
         click.echo(text, err=True)
 
     folder = out or Path(tempfile.mkdtemp(prefix='faults-'))
-    (folder / 'study').mkdir(parents=True)
-    lost = run_study(folder.resolve() / 'study', make_plans(seed, participants), say)
+    lost: list[str] = []
+    if participants:
+        (folder / 'study').mkdir(parents=True)
+        lost = run_study(folder.resolve() / 'study', make_plans(seed, participants), say)
     harness = Harness(folder.resolve(), seed, kills, trials, pace)
     try:
         report = harness.run(say=say)

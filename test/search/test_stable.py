@@ -17,6 +17,7 @@ from blocks_planning.board.blocks import Block, Placed
 from blocks_planning.board.geometry import Board
 from blocks_planning.board.task import Task
 from blocks_planning.errors import ConfigurationError, InvalidInput
+from blocks_planning.search import stable
 from blocks_planning.search.result import CancelToken, Problem, SolveStatus
 from blocks_planning.search.searches import BreadthFirst, RandomPlacement
 from blocks_planning.search.solve import solve
@@ -150,3 +151,12 @@ def test_planner_that_knows_what_falls_builds_no_tower_that_does(strategy: str) 
             assert follow(record.spec, {}) == record
     assert ends['random'] == {TrialStatus.SUCCESS, TrialStatus.COLLAPSED}
     assert ends['stable_random'] == {TrialStatus.SUCCESS}
+
+
+def test_kept_looks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    source = random.Random(11)
+    problems = [from_scratch(source, most_cells=8) for _ in range(20)]
+    kept = [solve(problem, StableBreadthFirst(2), 5, 400) for problem in problems]
+    assert max(result.attempts for result in kept) > 20
+    monkeypatch.setattr(stable, 'MOST_LOOKS', 0)
+    assert [solve(problem, StableBreadthFirst(2), 5, 400) for problem in problems] == kept
