@@ -37,15 +37,22 @@ def uncertain(out: Path, quick: bool, first_seed: int, workers: int | None) -> i
     from blocks_planning.experiments.running import default_workers
     from blocks_planning.experiments.sweeping import run_sweep
 
-    wanted = read_sweep(find_sweep('uncertain_quick' if quick else 'uncertain'))
-    wanted = replace(wanted, seeds=tuple(seed + first_seed for seed in wanted.seeds))
+    suffix = '_quick' if quick else ''
+    worlds, loose = (
+        replace(found, seeds=tuple(seed + first_seed for seed in found.seeds))
+        for found in (read_sweep(find_sweep(name + suffix)) for name in ('uncertain', 'stable'))
+    )
     workers = workers or default_workers()
     with bar('Trials') as report:
-        summary = run_sweep(wanted, out / 'sweep', workers, report=report)
-    optima = optimum_table(wanted, out, workers)
-    results = write_uncertainty(out / 'sweep', out, optima, [_QUICK] if quick else [])
+        summary = run_sweep(worlds, out / 'sweep', workers, report=report)
+    with bar('Trials with searches that know that towers fall') as report:
+        of_loose = run_sweep(loose, out / 'stable', workers, report=report)
+    optima = optimum_table(worlds, out, workers)
+    notes = [_QUICK] if quick else []
+    results = write_uncertainty(out / 'sweep', out / 'stable', out, optima, notes)
     print_summary(summary, out / 'sweep')
+    print_summary(of_loose, out / 'stable')
     for sentence in results['answers']:
         click.echo(sentence)
     click.echo(f'{out / "report.html"}: written')
-    return int(summary.failed > 0)
+    return int(summary.failed + of_loose.failed > 0)
