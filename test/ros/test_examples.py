@@ -33,6 +33,12 @@ STRATEGIES: dict[str, list[dict[str, Any]]] = {
     'subgoal_selector': [{'name': 'scoping'}, {'name': 'full'}],
     'my_selector': [{'name': 'external', 'program': program} for program in ('one', 'two')],
 }
+SEARCHES: dict[str, list[dict[str, Any]]] = {
+    'action_searcher': [{'name': 'bfs', 'depth': 3}],
+    'my_searcher': [{'name': 'external', 'program': 'large_blocks_first'}],
+}
+_BOUND_S = 240
+"""For five processes to start, and for four trials."""
 
 
 @contextmanager
@@ -70,6 +76,7 @@ def test_example_takes_the_place_of_a_node(examples: list[str], tmp_path: Path) 
         tmp_path,
         stimuli=['cogsci2021/5', 'cogsci2021/14'],
         strategies=STRATEGIES[nodes['subgoal_selector']],
+        searches=SEARCHES[nodes['action_searcher']],
     )
     commands['trial_orchestrator'] = [
         *('-m', NODES, 'trial_orchestrator', '--ros-args'),
@@ -83,7 +90,7 @@ def test_example_takes_the_place_of_a_node(examples: list[str], tmp_path: Path) 
             running = stack.enter_context(
                 process([sys.executable, *command], environment, tmp_path / f'{name}.log')
             )
-        assert running.wait(30) == 0
+        assert running.wait(_BOUND_S) == 0
     domain.release()
     records = read_records(tmp_path / 'trials.jsonl')
     assert len(records) == len(record_lines(tmp_path)) == 4
