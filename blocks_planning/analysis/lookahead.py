@@ -7,7 +7,7 @@ cost* if no other one rebuilds as many towers with fewer states, or more towers 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,13 +22,13 @@ MEASURES = ('success', 'states', 'blocks', 'decisions')
 _ALONE = 'none', 'full'
 
 
-def read_lookahead(folder: Path) -> pd.DataFrame:
-    """The trials of a finished sweep as :func:`.trials.read_measured`, with a column ``planner``.
+def read_lookahead(folders: Iterable[Path]) -> pd.DataFrame:
+    """The trials of finished sweeps as :func:`.trials.read_measured`, with a column ``planner``.
 
     Raises:
-        InvalidInput: if the folder has no finished sweep.
+        InvalidInput: if a folder has no finished sweep.
     """
-    trials = read_measured(folder)
+    trials = pd.concat(map(read_measured, folders), ignore_index=True)
     return trials.assign(planner=[_planner(row) for row in trials.to_dict('records')])
 
 
@@ -42,20 +42,22 @@ def summarise(trials: pd.DataFrame) -> dict[str, Any]:
     """The content of the report, as data.
 
     Returns:
-        ``cells``: each planner in each world, with an estimate of each measure, the states for
-        each tower that was rebuilt (``per_success``; None if none was), the status of its trials
-        and whether it is ``worth`` its cost.
+        ``seeds``: by slip; ``cells``: each planner in each world, with an estimate of each measure,
+        the states for each tower that was rebuilt (``per_success``; None if none was), the status of
+        its trials and whether it is ``worth`` its cost.
     """
-    seeds = [int(seed) for seed in sorted(trials['seed'].unique())]
-    resampling = Resampling.of(trials['stimulus'].nunique(), len(seeds))
-    cells = list(_cells(trials, resampling))
+    worlds = list(trials.groupby('slip', observed=True))
+    cells = [cell for _, part in worlds for cell in _cells(part)]
     for cell in cells:
         others = [one for one in cells if one['slip'] == cell['slip']]
         cell['worth'] = not any(_beats(one, cell) for one in others)
+    seeds = {f'{slip:g}': sorted(map(int, part['seed'].unique())) for slip, part in worlds}
     return {'trials': len(trials), 'seeds': seeds, 'cells': cells}
 
 
-def _cells(trials: pd.DataFrame, resampling: Resampling) -> Iterator[dict[str, Any]]:
+def _cells(trials: pd.DataFrame) -> Iterator[dict[str, Any]]:
+    """The planners in one world."""
+    resampling = Resampling.of(trials['stimulus'].nunique(), trials['seed'].nunique())
     for (slip, planner), part in trials.groupby(['slip', 'planner'], observed=True):
         first = part.iloc[0]
         found = {

@@ -19,11 +19,12 @@ _DASHES = ('-', '--', ':', '-.')
 def lookahead_figure(results: dict[str, Any]) -> Figure:
     """A panel for each world: a number is the horizon, a line joins those of one lambda."""
     slips = sorted({cell['slip'] for cell in results['cells']})
+    lambdas = sorted({cell['lambda'] for cell in results['cells']} - {None})
     figure = new_figure(10, 4)
     with styled():
         axes = figure.subplots(1, len(slips), sharex=True, sharey=True, squeeze=False)[0]
         for panel, slip in zip(axes, slips, strict=True):
-            _panel(panel, [cell for cell in results['cells'] if cell['slip'] == slip])
+            _panel(panel, [cell for cell in results['cells'] if cell['slip'] == slip], lambdas)
             panel.set_title(f'slip {slip:g}')
             panel.set_xlabel('states evaluated\n[states per trial]')
         axes[0].set_xscale('log')
@@ -32,8 +33,7 @@ def lookahead_figure(results: dict[str, Any]) -> Figure:
     return figure
 
 
-def _panel(panel: Axes, cells: list[dict[str, Any]]) -> None:
-    lambdas = sorted({cell['lambda'] for cell in cells if cell['lambda'] is not None})
+def _panel(panel: Axes, cells: list[dict[str, Any]], lambdas: list[float]) -> None:
     for family, colour in _FAMILIES.items():
         for number, lam in enumerate(lambdas):
             mine = [c for c in cells if c['family'] == family and c['lambda'] == lam]

@@ -10,11 +10,11 @@ from blocks_planning.analysis.lookahead_figure import lookahead_figure
 from blocks_planning.analysis.pages import write_page
 
 
-def write_lookahead(sweep: Path, folder: Path, notes: list[str]) -> dict[str, Any]:
-    """Write ``report.html``, ``results.json`` and ``figures/`` of a finished sweep.
+def write_lookahead(sweeps: list[Path], folder: Path, notes: list[str]) -> dict[str, Any]:
+    """Write ``report.html``, ``results.json`` and ``figures/`` of finished sweeps.
 
     Args:
-        sweep: folder of the sweep.
+        sweeps: folders of the sweeps.
         folder: where to write.
         notes: sentences for the head of the report.
 
@@ -22,9 +22,9 @@ def write_lookahead(sweep: Path, folder: Path, notes: list[str]) -> dict[str, An
         The content of ``results.json``.
 
     Raises:
-        InvalidInput: if the sweep has no tables.
+        InvalidInput: if a sweep has no tables.
     """
-    results = summarise(read_lookahead(sweep))
+    results = summarise(read_lookahead(sweeps))
     results['answers'] = answers(results)
     write_page(
         folder, 'lookahead.html', results, {'lookahead': lookahead_figure(results)}, notes=notes
