@@ -13,6 +13,8 @@ from blocks_planning.analysis.comparing import ratio_text
 from blocks_planning.analysis.style import save_figure
 from blocks_planning.extras import extra
 
+with extra('experiments'):
+    from joblib import Parallel, delayed
 with extra('figures'):
     from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
     from matplotlib.figure import Figure
@@ -23,6 +25,7 @@ def write_page(
     template: str,
     results: dict[str, Any],
     figures: Mapping[str, Figure],
+    workers: int = 1,
     **content: Any,
 ) -> None:
     """Write ``results.json``, ``report.html`` and ``figures/``.
@@ -32,9 +35,13 @@ def write_page(
         template: file name of the template of the page.
         results: content of ``results.json``; numbers are finite. The template has it as ``results``.
         figures: by file name without ending. The template has their addresses as ``figures``.
+        workers: number of processes that draw.
         content: what else the template shows.
     """
-    paths = {name: save_figure(one, folder / 'figures', name) for name, one in figures.items()}
+    drawn = Parallel(workers)(
+        delayed(save_figure)(one, folder / 'figures', name) for name, one in figures.items()
+    )
+    paths = dict(zip(figures, drawn, strict=True))
     text = json.dumps(results, indent=1, allow_nan=False)
     (folder / 'results.json').write_text(text + '\n', encoding='utf-8')
     addresses = {name: _data_url(path) for name, path in paths.items()}

@@ -21,6 +21,7 @@ from blocks_planning.analysis.report_tables import switch_rows, table_1_rows
 from blocks_planning.analysis.results import summarise
 from blocks_planning.analysis.stripes import figure_3
 from blocks_planning.analysis.trials import (
+    COMPARED,
     PRESETS,
     SEARCH_SETTINGS,
     read_decisions,
@@ -30,6 +31,7 @@ from blocks_planning.extras import extra
 
 with extra('experiments'):
     import pandas as pd
+    from joblib import Parallel, delayed
 with extra('figures'):
     from matplotlib.figure import Figure
 
@@ -44,6 +46,7 @@ def write_report(
     exact: list[dict[str, Any]],
     sizes: list[dict[str, Any]],
     notes: list[str],
+    workers: int = 1,
 ) -> dict[str, Any]:
     """Write ``results.json``, ``report.html`` and ``figures/`` of a finished sweep.
 
@@ -54,6 +57,7 @@ def write_report(
         exact: rows of exact values of single attempts; see :func:`add_exact`.
         sizes: a row for each tower; see :func:`.sizes.size_table`.
         notes: sentences for the head of the report.
+        workers: number of processes that compute and draw.
 
     Returns:
         The content of ``results.json``.
@@ -62,13 +66,9 @@ def write_report(
         InvalidInput: if a sweep has no tables.
     """
     trials = read_trials(sweep)
-    presets = {name: summarise(trials, name) for name in PRESETS}
-    compared = compare(presets, trials)
-    for name, results in presets.items():
-        add_exact(results['table1'], exact)
-        results['claims'] = compared[name]
-        results['people'] = compare_people(trials, name)
-    behaviour = compare_behaviour(sweep, MAIN)
+    presets, behaviour = Parallel(workers)(
+        [delayed(_presets)(trials, exact), delayed(compare_behaviour)(sweep, MAIN)]
+    )
     switched, other_searches = switch_rows(trials), beyond_rows(beyond)
     written = {
         **presets[MAIN],
@@ -85,6 +85,7 @@ def write_report(
         'report.html',
         written,
         _figures(presets, trials, read_decisions(sweep)) | behaviour_figures(behaviour),
+        workers,
         paper=the_paper(),
         presets=presets,
         main=MAIN,
@@ -99,6 +100,18 @@ def write_report(
         exact_budget=exact[0]['budget'] if exact else 0,
     )
     return written
+
+
+def _presets(trials: pd.DataFrame, exact: list[dict[str, Any]]) -> dict[str, Any]:
+    """The numbers of each preset, compared with the paper's claims and with people."""
+    trials = trials[list(COMPARED)]  # a row with all settings is several times as wide
+    presets = {name: summarise(trials, name) for name in PRESETS}
+    compared = compare(presets, trials)
+    for name, results in presets.items():
+        add_exact(results['table1'], exact)
+        results['claims'] = compared[name]
+        results['people'] = compare_people(trials, name)
+    return presets
 
 
 def _figures(

@@ -23,6 +23,12 @@ SETTINGS = ('commit', *SEARCH_SETTINGS)
 MEASURES = ('success', 'action_planning_cost', 'subgoal_planning_cost', 'blocks', 'subgoals')
 """Success is over all runs, everything else over the successful ones (paper, section "Results")."""
 
+COMPARED = (
+    *('stimulus', 'search', 'strategy', 'seed', 'budget', 'lambda', *SETTINGS),
+    *(*MEASURES, 'solution_cost'),
+)
+"""The columns of the table of trials that a comparison with the paper needs."""
+
 _WORDS = ('experiment', 'stimulus', 'strategy', 'search', 'status')
 _WORD_SETTINGS = ('commit', 'dead_ends', 'divisor', 'execute')
 

@@ -106,7 +106,11 @@ class Board:
 
     def rows_up_to(self, mask: Mask) -> int:
         """Number of rows from the ground up to the highest cell of a mask; 0 if it is empty."""
-        return max((row + 1 for _, row in self.cells(mask)), default=0)
+        column, folded = (1 << self.height) - 1, 0
+        while mask:
+            folded |= mask & column
+            mask >>= self.height
+        return folded.bit_length()
 
     def parse(self, rows: Sequence[str]) -> Mask:
         """The mask of a picture from :meth:`draw`, top row first; the text is not checked."""

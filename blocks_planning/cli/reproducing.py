@@ -57,7 +57,7 @@ def reproduce(out: Path, quick: bool, workers: int | None) -> int:
     sizes = size_table(wanted.towers[-_QUICK_TOWERS:] if quick else wanted.towers, workers)
     known = perf_counter()
     notes = [_QUICK] if quick else []
-    results = write_report(out / 'sweep', out / 'beyond', out, exact, sizes, notes)
+    results = write_report(out / 'sweep', out / 'beyond', out, exact, sizes, notes, workers)
     end = perf_counter()
     print_summary(summary, out / 'sweep')
     print_summary(others, out / 'beyond')

@@ -21,7 +21,7 @@ import numpy as np
 from blocks_planning.board.geometry import Board
 from blocks_planning.extras import extra
 from blocks_planning.subgoals.decision import Decision
-from blocks_planning.trials.flat import flat_settings, flat_values
+from blocks_planning.trials.flat import FlatSetting, flat_settings, flat_values
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.spec import FAMILIES, TrialSpec
 
@@ -124,7 +124,8 @@ class Failure(NamedTuple):
 def make_tables(experiment: str, outcomes: Sequence[TrialRecord | Failure]) -> Tables:
     """The tables of some trials, in their order."""
     records = [outcome for outcome in outcomes if isinstance(outcome, TrialRecord)]
-    trials = [_trial_row(experiment, outcome) for outcome in outcomes]
+    settings = flat_settings()
+    trials = [_trial_row(experiment, outcome, settings) for outcome in outcomes]
     decisions = [
         {'trial_id': record.spec.trial_id, 'decision': index, **_decision_row(record, entry)}
         for record in records
@@ -138,14 +139,16 @@ def make_tables(experiment: str, outcomes: Sequence[TrialRecord | Failure]) -> T
     )
 
 
-def _trial_row(experiment: str, outcome: TrialRecord | Failure) -> dict[str, Any]:
+def _trial_row(
+    experiment: str, outcome: TrialRecord | Failure, settings: list[FlatSetting]
+) -> dict[str, Any]:
     spec = outcome.spec
     row = {
         'trial_id': spec.trial_id,
         'experiment': experiment,
         'stimulus': spec.stimulus,
         **{family: getattr(spec, family).name for family in FAMILIES},
-        **flat_values(spec, flat_settings()),
+        **flat_values(spec, settings),
         'seed': spec.seed,
         'budget': spec.budget,
     }

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from blocks_planning.experiments.spec import Chunk
 from blocks_planning.experiments.tables import Failure, Tables, make_tables
 from blocks_planning.search.result import SolveResult
@@ -19,10 +23,23 @@ def run_chunk(chunk: Chunk) -> Tables:
     does not end a long sweep.
     """
     outcomes: list[TrialRecord | Failure] = []
-    for group in chunk.groups():
-        answers: dict[Query, SolveResult] = {}
-        outcomes += [_run(spec, answers) for spec in group]
-    return make_tables(chunk.experiment.name, outcomes)
+    with _collector_paused():
+        for group in chunk.groups():
+            answers: dict[Query, SolveResult] = {}
+            outcomes += [_run(spec, answers) for spec in group]
+        return make_tables(chunk.experiment.name, outcomes)
+
+
+@contextmanager
+def _collector_paused() -> Iterator[None]:
+    """Without searches for cyclic garbage: records are many objects, and have no cycles."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
 def _run(spec: TrialSpec, answers: dict[Query, SolveResult]) -> TrialRecord | Failure:

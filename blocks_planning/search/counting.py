@@ -29,7 +29,8 @@ from blocks_planning.search.state_counts import count_states
 
 MAX_OUTLINES = 10_000_000
 """Largest number of stored outlines, about 50 bytes each (0.5 GB)."""
-_AT_FIRST = 1 << 18
+_AT_FIRST = 1 << 22
+_WORDS_AT_FIRST = 2  # enough for every tower of the paper
 _GROWTH = 4
 
 
@@ -75,7 +76,9 @@ def _walk(task: Task, limit: int, cancel: CancelToken) -> Walks | None:
     """The outlines of a task with the number of sequences to each; None if cancelled."""
     tables = tables_of(task, task.silhouette)
     region = pack([task.silhouette, 0], task.board.size)
-    size, words = min(_AT_FIRST, limit), 1
+    # No more outlines than sets of cells. A walk that outgrows its memory begins again.
+    size = min(_AT_FIRST, limit, 1 << tables.target)
+    words = _WORDS_AT_FIRST
     while True:
         walks = make_walks(size, tables.legal.shape[1:], words, task.board.size, len(task.library))
         found = walk(walks, tables, region, cancel.flag)

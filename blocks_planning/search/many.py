@@ -37,6 +37,7 @@ Done = Callable[[int, SolveResult], None]
 
 _LARGEST_PORTION = 64
 _PORTIONS_PER_WORKER = 8
+"""If several threads share the work, or a caller watches it."""
 
 
 def solve_many(
@@ -75,7 +76,9 @@ def solve_many(
     places: dict[Problem, list[int]] = {}
     for index, problem in enumerate(problems):
         places.setdefault(problem, []).append(index)
-    work = _Work(list(places), search, seed, budget, cancel or CancelToken(), number)
+    work = _Work(
+        list(places), search, seed, budget, cancel or CancelToken(), number, done is not None
+    )
     results: dict[int, SolveResult] = {}
     with closing(work.results()) as solved:
         for problem, result in solved:
@@ -107,12 +110,14 @@ class _Work:
         budget: int,
         cancel: CancelToken,
         workers: int,
+        in_sight: bool,
     ) -> None:
         self._search, self._seed, self._budget = search, seed, budget
         self._cancel = cancel
         self._stop = np.zeros(1, np.uint8)
         self._lock = threading.Lock()
-        portions = [portion for mine in _by_task(problems) for portion in _portions(mine, workers)]
+        parts = _PORTIONS_PER_WORKER * workers if in_sight or workers > 1 else 1
+        portions = [portion for mine in _by_task(problems) for portion in _portions(mine, parts)]
         self._portions = iter(portions)
         self._most_left: dict[Task, int] = {}
         for portion in portions:
@@ -210,8 +215,8 @@ def _by_task(problems: Sequence[Problem]) -> list[list[Problem]]:
     return [sorted(group, key=_left, reverse=True) for group in groups.values()]
 
 
-def _portions(problems: list[Problem], workers: int) -> Iterator[list[Problem]]:
-    """Parts of a list, so small that every worker gets several, and progress is visible."""
-    size = min(-(-len(problems) // (_PORTIONS_PER_WORKER * workers)), _LARGEST_PORTION)
+def _portions(problems: list[Problem], wanted: int) -> Iterator[list[Problem]]:
+    """At least as many parts of a list as wanted, if it is long enough, and none too large."""
+    size = min(-(-len(problems) // wanted), _LARGEST_PORTION)
     for start in range(0, len(problems), size):
         yield problems[start : start + size]

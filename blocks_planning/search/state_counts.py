@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from blocks_planning.board.geometry import Board, Mask
+from blocks_planning.board.geometry import Mask
 from blocks_planning.board.task import Task
 from blocks_planning.errors import LimitExceeded
 from blocks_planning.search.result import CancelToken
@@ -24,13 +24,20 @@ _CHECK_EVERY = 1024
 class Profile(NamedTuple):
     """The properties of filled cells that determine how they can be continued."""
 
-    below: Mask  # filled cells of this row and the row below
+    below: Mask  # filled cells on which later blocks of this row or the next can rest
     claims: frozenset[Mask]  # undecided cells that blocks cover, for every tiling
 
 
 class _Rectangle(NamedTuple):
     cells: Mask
     support: Mask  # the cells right below it; none on the ground
+
+
+class _Claims(NamedTuple):
+    """The claims after a cell, for each decision."""
+
+    empty: frozenset[Mask]
+    filled: frozenset[Mask]
 
 
 _Counts = dict[Profile, int]
@@ -61,7 +68,8 @@ def count_states(
                     f'the states of this silhouette of {board.width} x {board.height} cells have '
                     f'more than the limit of {limit} profiles'
                 )
-        counts = _forget_below(counts, board, row)
+            if row:
+                counts = _forget(counts, board.mask([(column, row - 1)]))
     return sum(number for profile, number in counts.items() if 0 in profile.claims)
 
 
@@ -83,25 +91,34 @@ def _decide(
 ) -> _Counts | None:
     """The profiles after a cell, filled or empty; None if cancelled."""
     following: _Counts = {}
+    decided: dict[tuple[frozenset[Mask], tuple[Mask, ...]], _Claims] = {}
     for index, ((below, claims), number) in enumerate(counts.items()):
         if index % _CHECK_EVERY == 0 and cancel.cancelled:
             return None
-        standing = [cells for cells, support in rectangles if not support or support & below]
-        empty = frozenset(claim for claim in claims if not claim & cell)
-        filled = frozenset(claim & ~cell for claim in claims if claim & cell) | frozenset(
-            (claim | cells) & ~cell for claim in empty for cells in standing if not claim & cells
-        )
-        for profile in (Profile(below, empty), Profile(below | cell, filled)):
+        standing = tuple(cells for cells, support in rectangles if not support or support & below)
+        found = decided.get((claims, standing))
+        if found is None:
+            found = decided[claims, standing] = _claims_after(claims, cell, standing)
+        for profile in (Profile(below, found.empty), Profile(below | cell, found.filled)):
             if profile.claims:
                 following[profile] = following.get(profile, 0) + number
     return following
 
 
-def _forget_below(counts: _Counts, board: Board, row: int) -> _Counts:
-    """The profiles after a finished row, reduced to the filled cells of that row."""
-    this_row = board.rectangle(0, row, board.width, 1)
+def _claims_after(claims: frozenset[Mask], cell: Mask, standing: tuple[Mask, ...]) -> _Claims:
+    """The claims after a cell at which the blocks ``standing`` can have their lower left cell."""
+    empty = frozenset(claim for claim in claims if not claim & cell)
+    covered = frozenset(claim & ~cell for claim in claims if claim & cell)
+    placed = frozenset(
+        (claim | cells) & ~cell for claim in empty for cells in standing if not claim & cells
+    )
+    return _Claims(empty, covered | placed)
+
+
+def _forget(counts: _Counts, cell: Mask) -> _Counts:
+    """The profiles when no later block can rest on a cell: whether it is filled does not matter."""
     following: _Counts = {}
     for (below, claims), number in counts.items():
-        profile = Profile(below & this_row, claims)
+        profile = Profile(below & ~cell, claims)
         following[profile] = following.get(profile, 0) + number
     return following

@@ -25,6 +25,8 @@ def best(candidates: Sequence[Candidate], seed: int, built: Mask) -> int | None:
         return None
     highest = max(values)
     ties = [index for index, candidate in enumerate(candidates) if candidate.value == highest]
+    if len(ties) == 1:
+        return ties[0]
     return ties[Generator([seed, *mask_words(built)]).below(len(ties))]
 
 

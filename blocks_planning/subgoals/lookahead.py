@@ -68,6 +68,10 @@ def considered(how: Lookahead, task: Task, built: Mask, seed: int) -> Considered
     Raises:
         LimitExceeded: if there are too many sequences to count.
     """
+    if how.horizon == 1:
+        alone = _alone(how, task, built)
+        if len(alone) <= how.max_sequences:
+            return Considered(alone, len(alone))
     tree = _Tree(how, task)
     existing = tree.count(built, how.horizon)
     if existing > MOST_EXISTING:
@@ -77,6 +81,12 @@ def considered(how: Lookahead, task: Task, built: Mask, seed: int) -> Considered
         generator = Generator([seed, *mask_words(built), how.horizon])
         numbers = sorted(_drawn(generator, existing, how.max_sequences))
     return Considered(tuple(tree.chain(built, number) for number in numbers), existing)
+
+
+@lru_cache(maxsize=256)
+def _alone(how: Lookahead, task: Task, built: Mask) -> tuple[Chain, ...]:
+    """Each region of a state alone; trials with other settings come through the same states."""
+    return tuple((region,) for region in regions_to_aim_at(how.family, task, built, how.aim))
 
 
 def _drawn(generator: Generator, existing: int, wanted: int) -> set[int]:

@@ -65,8 +65,10 @@ def _step(before: _Step, region: Region, situation: Situation) -> _Step:
 
 def _shared(one: Chain, other: Chain) -> int:
     """Number of regions that two chains have in common at their beginning."""
-    pairs = enumerate(zip(one, other, strict=False))
-    return next((n for n, (a, b) in pairs if a != b), min(len(one), len(other)))
+    most, shared = min(len(one), len(other)), 0
+    while shared < most and one[shared] == other[shared]:
+        shared += 1
+    return shared
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,8 @@ class Label(NamedTuple):
     numbers: tuple[int, ...] = ()
 
     def __str__(self) -> str:
-        return ' '.join([self.kind, *filter(None, [','.join(map(str, self.numbers))])])
+        numbers = ','.join(map(str, self.numbers))
+        return f'{self.kind} {numbers}' if numbers else self.kind
 
 
 class Region(NamedTuple):
