@@ -65,6 +65,17 @@ class Boastful(BreadthFirst):
 
 
 @dataclass(frozen=True)
+class Thrifty(BreadthFirst):
+    """Forgets the cost of failed attempts, and a state of the last one."""
+
+    name: ClassVar[str] = 'thrifty'
+
+    def run(self, problem: Problem, seed: int, budget: int, cancel: CancelToken) -> SolveResult:
+        found = super().run(problem, seed, budget, cancel)
+        return replace(found, planning_cost=max(0, found.solution_cost - 1))
+
+
+@dataclass(frozen=True)
 class Deaf(BreadthFirst):
     """Ignores the token."""
 
@@ -155,6 +166,7 @@ class Credulous(Simulated):
     [
         (testing.check_search, Forgetful, 'is not repeatable'),
         (testing.check_search, Boastful, 'has a status that contradicts'),
+        (testing.check_search, Thrifty, 'has a solution cost above the planning cost'),
         (testing.check_search, Deaf, 'continues after it was cancelled'),
         (testing.check_search, Careless, 'setting width has no line of help'),
         (testing.check_regions, Repeating, 'lists a target twice'),

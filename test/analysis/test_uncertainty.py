@@ -49,6 +49,20 @@ def test_report_is_in_one_piece(folder: Path) -> None:
         assert (folder / 'figures' / f'{name}.png').stat().st_size > 10_000
 
 
+def test_loose_towers_are_compared_where_nothing_slips(folder: Path, results: Any) -> None:
+    trials = read_uncertain(folder / 'sweep')
+    obeyed = trials[(trials['slip'] == 0) & (trials['loss'] == 0)]
+    assert results['loose']
+    for row in results['loose']:
+        mine = obeyed[
+            (obeyed['stimulus'] == row['stimulus']) & (obeyed['planner'] == row['planner'])
+        ]
+        for blocks in ('glued', 'loose'):
+            part = mine[mine['blocks_are'] == blocks]
+            assert row[blocks] == pytest.approx(float((part['status'] == 'success').mean()))
+        assert row['falls'] == pytest.approx(float((part['status'] == 'collapsed').mean()))
+
+
 def test_numbers_follow_from_the_trials(folder: Path, results: Any) -> None:
     trials = read_uncertain(folder / 'sweep')
     assert results['trials'] == len(trials) == 8 * 2 * 5 * 4

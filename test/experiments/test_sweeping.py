@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,7 @@ import pytest
 from sweeps import STRATEGIES, sweep, tables_in
 
 from blocks_planning.errors import ConfigurationError
-from blocks_planning.experiments import running, sweeping, working
+from blocks_planning.experiments import manifest, running, sweeping, working
 from blocks_planning.experiments.spec import Chunk
 from blocks_planning.experiments.store import Store, read_table
 from blocks_planning.experiments.sweeping import run_sweep
@@ -85,7 +87,8 @@ def test_interrupted_sweep_goes_on(
         run_sweep(sweep(), tmp_path, workers, report=interrupt)
     there = {part.name for part in (tmp_path / 'parts').iterdir()}
     assert 1 <= len(there) < len(sweep().chunks())
-    (tmp_path / 'parts' / 'f00.half').mkdir()  # killed while it was written
+    left = next(c for c in sweep().chunks() if c.chunk_id not in there)
+    (tmp_path / 'parts' / f'{left.chunk_id}.half').mkdir()  # killed while it was written
     ran: list[str] = []
 
     def run(chunk: Chunk) -> Tables:
@@ -93,7 +96,10 @@ def test_interrupted_sweep_goes_on(
         return working.run_chunk(chunk)
 
     monkeypatch.setattr(running, 'run_chunk', run)
-    run_sweep(sweep(), tmp_path)
+    reported: list[tuple[int, int]] = []
+    run_sweep(sweep(), tmp_path, report=lambda *counts: reported.append(counts))
+    done = sum(chunk.trials for chunk in sweep().chunks() if chunk.chunk_id in there)
+    assert (reported[0], reported[-1]) == ((done, 360), (360, 360))
     assert set(ran) == {chunk.chunk_id for chunk in sweep().chunks()} - there
     assert tables_in(tmp_path) == whole
     assert not (tmp_path / 'parts').exists()
@@ -166,14 +172,32 @@ def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
 
 def test_manifest_says_what_ran(tmp_path: Path) -> None:
     run_sweep(sweep(1), tmp_path)
-    manifest = json.loads((tmp_path / 'manifest.json').read_text())
-    assert manifest['sweep_id'] == sweep(1).sweep_id
-    assert manifest['sweep']['seeds'] == [0]
-    assert manifest['sweep']['experiments'][0]['searches'][0] == {
+    said = json.loads((tmp_path / 'manifest.json').read_text())
+    assert said['sweep_id'] == sweep(1).sweep_id
+    assert said['sweep']['seeds'] == [0]
+    assert said['sweep']['experiments'][0]['searches'][0] == {
         'name': 'bfs', 'depth': 2, 'dead_ends': 'worst',
     }  # fmt: skip
-    assert manifest['provenance']['libraries']['numpy']
-    assert manifest['provenance']['machine']['processors'] >= 1
+    assert said['provenance']['libraries']['numpy']
+    assert said['provenance']['machine']['processors'] >= 1
+
+
+def test_manifest_marks_a_revision_with_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / 'package' / 'folder' / 'manifest.py'
+    monkeypatch.setattr(manifest, '__file__', str(path))
+    assert manifest.provenance()['git_revision'] is None
+    for words in (
+        ('init', '--quiet'),
+        ('-c', 'user.name=a', '-c', 'user.email=a@b', 'commit', '-qm', 'a', '--allow-empty'),
+    ):
+        subprocess.run(['git', *words], cwd=tmp_path, check=True)
+    clean = manifest.provenance()['git_revision']
+    assert re.fullmatch('[0-9a-f]{40}', clean)
+    path.parent.mkdir(parents=True)
+    path.write_text('')
+    assert manifest.provenance()['git_revision'] == f'{clean}+'
 
 
 def test_missing_table_is_named(tmp_path: Path) -> None:

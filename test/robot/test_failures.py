@@ -151,3 +151,34 @@ def test_block_that_is_pushed_is_seen_where_it_is() -> None:
     for _ in range(100):
         robot.step()
     assert robot.perceive().placed != before.placed
+
+
+def test_reason_is_that_of_the_first_failure() -> None:
+    """Even if the block cannot be brought back afterwards."""
+    robot = Robot(BOARD)
+    hidden = robot.simulation.add(Block(2, 3), 0.04)
+    robot.simulation.glue([hidden])
+    robot.order(FIRST)
+    go_on_until(robot, Phase.BRING_BACK)
+    robot._behaviour.memory.entered = -1000.0
+    report = finish(robot)
+    assert (report.phase, report.reason) == (Phase.CARRY, Reason.COLLISION)
+    assert report.text == 'carry: the arm was blocked'
+
+
+@pytest.mark.parametrize(
+    ('y', 'orientation'),
+    [(0.03, (1.0, 0.0, 0.0, 0.0)), (0.0, (0.5**0.5, 0.5**0.5, 0.0, 0.0))],
+    ids=['in front of the board', 'on its face'],
+)
+def test_block_that_left_the_plane_of_the_board_does_not_stand_on_it(
+    y: float, orientation: tuple[float, float, float, float]
+) -> None:
+    robot = Robot(BOARD, RobotSettings(glue=False))
+    robot.place(FIRST)
+    assert robot.perceive().placed == (Placed(2, 1, 0, 0),)
+    x, middle, z = robot.simulation.pose(0).position
+    robot.simulation.place(0, Pose((x, middle + y, z), orientation))
+    seen = robot.perceive()
+    assert seen.placed == ()
+    assert [remark.number for remark in seen.warnings] == [0]

@@ -193,6 +193,15 @@ def test_inbox_is_bounded_by_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
     assert box.take('trial 0') == []
 
 
+def test_inbox_drops_the_trial_that_was_silent_longest() -> None:
+    box = Inbox()
+    trials = [f'trial {number}' for number in range(inbox.MOST_TRIALS)]
+    for trial_id in (*trials, trials[0], 'another'):
+        box.hold(trial_id, trial_id)
+    assert box.take(trials[1]) == []
+    assert box.take(trials[0]) == [trials[0]] * 2
+
+
 def test_searcher_takes_on_no_more_than_it_can(monkeypatch: pytest.MonkeyPatch) -> None:
     from blocks_planning.subgoals.decision import Query
     from blocks_planning.trials import searcher

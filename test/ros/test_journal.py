@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import stat
 from pathlib import Path
 
 import pytest
@@ -53,6 +55,21 @@ def test_every_observation_is_on_disk_when_the_disk_is_waited_for(
     sizes = watch_fsync(monkeypatch)
     path = journal_of(tmp_path)
     assert path.stat().st_size in sizes
+
+
+def test_name_of_a_new_journal_is_on_disk_when_the_disk_is_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else a power cut could lose a file whose content is on disk."""
+    names: list[list[str]] = []
+
+    def watched(descriptor: int) -> None:
+        if stat.S_ISDIR(os.fstat(descriptor).st_mode):
+            names.append(os.listdir(descriptor))
+
+    monkeypatch.setattr(os, 'fsync', watched)
+    path = journal_of(tmp_path)
+    assert [path.name] in names
 
 
 def test_journal_that_goes_on_is_on_disk_before_it_replaces_the_old_one(

@@ -25,7 +25,7 @@ from blocks_planning.ros.wire.conversions.trial import spec_to_ros
 from blocks_planning.ros.wire.graph import TRIAL_ORCHESTRATOR
 from blocks_planning.ros.wire.topics import STATE, SUBGOAL
 from blocks_planning.trials.execution import SubgoalChosen
-from blocks_planning.trials.messages import TrialEnded, TrialStarted, WorldState
+from blocks_planning.trials.messages import CancelTrial, TrialEnded, TrialStarted, WorldState
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
 
@@ -170,6 +170,22 @@ def test_orchestrator_cancels_a_goal_that_nobody_works_on(graph: Graph, tmp_path
         sending.result().cancel_goal_async()
         graph.spin_until(result.done, deadline_s=2.0)
         assert result.result().status == GoalStatus.STATUS_CANCELED
+
+
+def test_goal_whose_trial_cannot_go_on_is_aborted_with_the_reason(
+    graph: Graph, tmp_path: Path
+) -> None:
+    """Its caller did not cancel it."""
+    on, client = with_client(graph, tmp_path)
+    sending = client.send_goal_async(RunTrial.Goal(trial=spec_to_ros('', TRIAL_SPEC)))
+    graph.spin_until(sending.done)
+    (trial,) = on.hear(1, TrialStarted)
+    on.node.take(CancelTrial(trial.trial_id, 'the world is on fire'))
+    result = sending.result().get_result_async()
+    graph.spin_until(result.done)
+    assert result.result().status == GoalStatus.STATUS_ABORTED
+    outcome = result.result().result.outcome
+    assert (outcome.status, outcome.reason) == ('cancelled', 'the world is on fire')
 
 
 class Caller(Node):

@@ -21,7 +21,7 @@ from graphs import (
     write_script,
 )
 from peers import Graph
-from rclpy.action.client import ActionClient
+from rclpy.action.client import ActionClient, GoalStatus
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
@@ -33,7 +33,7 @@ from blocks_planning.ros.nodes.action_searcher import ActionSearcher
 from blocks_planning.ros.nodes.trial_orchestrator import TrialOrchestrator
 from blocks_planning.ros.wire import qos
 from blocks_planning.ros.wire.conversions.place import order_to_ros
-from blocks_planning.trials.messages import ArmOrder
+from blocks_planning.trials.messages import ArmOrder, TrialStarted
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.status import TrialStatus
@@ -118,6 +118,26 @@ def test_cancelled_trial_stops_the_arm_and_the_next_works(graph: Graph, tmp_path
     assert not robot.is_busy
     trial.start()
     assert trial.record().status is TrialStatus.SUCCESS
+
+
+def test_cancelled_goal_stops_the_arm(graph: Graph) -> None:
+    """Although the trial goes on."""
+    arm = graph.add(RobotArm)
+    arm.take(TrialStarted('trial', SPEC))
+    robot = arm.robot
+    assert robot is not None
+    asking = graph.add(lambda **options: Node('asking', **options))
+    client = ActionClient(asking, Place, 'place')
+    graph.spin_until(client.server_is_ready)
+    goal = order_to_ros(ArmOrder('trial', 0, Placed(1, 2, 0, 0)), CELL_M)
+    sent = client.send_goal_async(goal)
+    graph.spin_until(lambda: robot.robot.is_moving)
+    sent.result().cancel_goal_async()
+    got = sent.result().get_result_async()
+    graph.spin_until(got.done)
+    assert got.result().status == GoalStatus.STATUS_CANCELED
+    assert not robot.is_busy
+    assert not robot.robot.is_moving
 
 
 def test_robot_that_is_restarted_continues(graph: Graph, tmp_path: Path) -> None:

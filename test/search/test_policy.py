@@ -146,6 +146,9 @@ def test_random_on_small_boards_by_enumeration() -> None:
         assert found is not None
         check(found, every)
         assert found.within_budget == pytest.approx(1 - (1 - found.success) ** 7)
+        once = analyse_policy(Problem(task, 0, task.silhouette), RandomPlacement(), 0)
+        assert once is not None
+        assert once.within_budget == pytest.approx(found.success)
 
 
 def check(found: ExactPolicy, every: dict[Outcome, Fraction]) -> None:

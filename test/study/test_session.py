@@ -194,6 +194,18 @@ def test_time_runs_only_while_the_page_is_there(person: Person, clock: Clock) ->
     person.go_on()
 
 
+def test_time_goes_on_when_the_page_comes_again_before_it_is_known_to_be_gone(
+    person: Person, clock: Clock
+) -> None:
+    session = person.session
+    session.arrive()
+    person.go_to(StepKind.TRIAL, 'building')
+    clock.s += 40
+    session.arrive()
+    clock.s += 5
+    assert session.left_s == 15
+
+
 def test_after_a_crash_at_any_event_it_goes_on_where_it_was(
     opened: Callable[[], Desk], folder: Path
 ) -> None:

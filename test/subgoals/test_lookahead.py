@@ -15,10 +15,11 @@ from blocks_planning.board.geometry import Board, Mask
 from blocks_planning.board.task import Task
 from blocks_planning.errors import ConfigurationError, LimitExceeded
 from blocks_planning.search.many import solve_many
-from blocks_planning.search.result import Problem
+from blocks_planning.search.result import Problem, SolveStatus
 from blocks_planning.search.searches import make_search
 from blocks_planning.subgoals import lookahead
-from blocks_planning.subgoals.decision import Decision, Situation, Strategy
+from blocks_planning.subgoals.choosing import drawn
+from blocks_planning.subgoals.decision import Candidate, Decision, Situation, Strategy
 from blocks_planning.subgoals.registry import make_strategy
 
 SEARCHES: list[tuple[str, dict[str, Any]]] = [('random', {}), ('bfs', {'depth': 1})]
@@ -246,3 +247,13 @@ def test_sequences_that_cannot_be_counted_are_refused(monkeypatch: pytest.Monkey
 def test_bad_setting_is_refused(name: str, value: object) -> None:
     with pytest.raises(ConfigurationError, match=f'{name} must be'):
         make_strategy('scoping', {name: value})
+
+
+def test_draw_beyond_the_sum_of_the_probabilities_takes_the_last_possible_candidate() -> None:
+    """Rounding can leave the sum below 1."""
+    candidates = [
+        Candidate(builders.row_regions(1), 1, 0, 1.0, SolveStatus.SOLVED, probability)
+        for probability in (1e-300, 1e-300, 0.0)
+    ]
+    assert [drawn(candidates, seed, 0) for seed in range(5)] == [1] * 5
+    assert drawn(candidates[2:], 0, 0) is None

@@ -18,7 +18,7 @@ from blocks_planning.search.result import CancelToken
 from blocks_planning.search.searches import BreadthFirst
 from blocks_planning.subgoals.scoping import Scoping
 from blocks_planning.towers.balancing import balanced_sets, imbalance
-from blocks_planning.towers.candidates import drop_blocks
+from blocks_planning.towers.candidates import drop_blocks, with_a_cell_changed
 from blocks_planning.towers.difficulty import Planner, difficulty_of
 from blocks_planning.towers.making import Made, Recipe, make_towers
 from blocks_planning.towers.measures import Instruments
@@ -59,10 +59,31 @@ def test_towers_are_as_wanted(solvable: bool, wanted: dict[str, Range]) -> None:
         assert all(shape[name] in wanted[name] for name in wanted)
 
 
+def test_as_many_blocks_are_dropped_as_the_range_allows() -> None:
+    """Both ends included."""
+    recipe = small(library=(Block(1, 1),), dropped=Range(2, 4))
+    cells = {tower.silhouette.bit_count() for tower in make_towers(recipe, 20, seed=0)}
+    assert cells == {2, 3, 4}
+
+
 def test_the_seed_decides() -> None:
     first, again, other = (make_towers(small(), 3, seed) for seed in (1, 1, 2))
     assert first == again != other
     assert make_towers(small(), 5, 1)[:3] == first
+
+
+def test_a_changed_cell_is_of_the_tower_or_beside_it() -> None:
+    """Also at the edges of the board."""
+    board = Board(3, 3)
+    for cell in board.cells(board.full):
+        tower = board.mask([cell])
+        changed = {
+            next(board.cells(tower ^ with_a_cell_changed(board, tower, np.random.default_rng(i))))
+            for i in range(60)
+        }
+        column, row = cell
+        near = {cell, (column - 1, row), (column + 1, row), (column, row - 1), (column, row + 1)}
+        assert changed == near & set(board.cells(board.full))
 
 
 def test_a_dropped_tower_is_connected_and_is_built_as_it_says() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from builders import CHAIR, spec
 from parts import CHOSEN, HEARD, IDS, STATES, TRIAL, TRIALS, heard, only, started, tell
 
 from blocks_planning.trials import scribe, world
@@ -12,6 +13,7 @@ from blocks_planning.trials.execution import SubgoalChosen
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.messages import (
     CancelTrial,
+    Message,
     PlacementCode,
     PlacementOutcome,
     TrialEnded,
@@ -54,6 +56,20 @@ def test_record_of_a_cancelled_trial_is_cut_where_something_was_on_its_way() -> 
             memory, _ = tell(scribe, [HEARD[0], state, *CHOSEN[:count]])
             memory, _ = scribe.step(memory, CancelTrial(TRIAL.trial_id, 'why'))
             assert list(contradictions(memory.record())) == []
+
+
+def test_record_of_a_cancelled_trial_ends_with_the_subgoal_that_is_open() -> None:
+    """The plan of all subgoals was decided and begun, but only some of its blocks are seen."""
+    trial = spec(CHAIR, strategy='full')
+    said: list[Message] = []
+    run_trial(trial, observe=said.append)
+    start, *_ = said
+    chosen = [message for message in said if isinstance(message, SubgoalChosen)][-1]
+    assert chosen.index > 0
+    for state in [message for message in said if isinstance(message, WorldState)]:
+        memory, _ = tell(scribe, [start, state, chosen])
+        memory, _ = scribe.step(memory, CancelTrial(trial.trial_id, 'why'))
+        assert list(contradictions(memory.record())) == []
 
 
 def test_scribe_says_the_usual_sentence_of_a_failure_without_one() -> None:

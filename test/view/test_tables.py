@@ -1,8 +1,9 @@
-"""The table of what people proposed."""
+"""The tables of trials, and of what people proposed."""
 
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 
 import pytest
 from builders import ARCH, CHAIR, SQUARE, record
@@ -11,7 +12,8 @@ from rich.console import Console
 
 from blocks_planning.subgoals.proposals import ProposalKind
 from blocks_planning.trials.record import TrialRecord
-from blocks_planning.view.tables import print_proposals
+from blocks_planning.trials.status import TrialStatus
+from blocks_planning.view.tables import print_proposals, print_summary
 
 
 def printed(*records: TrialRecord, width: int = 80) -> list[list[str]]:
@@ -53,3 +55,17 @@ def test_without_a_person_there_is_no_table() -> None:
 
 def test_it_fits_into_a_narrow_terminal() -> None:
     assert printed(human_record(SQUARE), width=66)[-1][:2] == ['P01', 'small']
+
+
+def test_means_are_over_the_successful_trials() -> None:
+    done = record(SQUARE)
+    failed = replace(done, status=TrialStatus.GAVE_UP, observations=done.observations[:1])
+    rows = []
+    for records in ([done, done], [done, failed, done], [failed, failed]):
+        out = io.StringIO()
+        print_summary(records, Console(file=out, width=100))
+        (row,) = (line for line in out.getvalue().splitlines() if 'small' in line)
+        rows.append(row.split())
+    assert [row[1] for row in rows] == ['2/2', '2/3', '0/2']
+    assert rows[1][2:] == rows[0][2:]
+    assert rows[2][2:] == ['-'] * 5

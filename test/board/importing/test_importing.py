@@ -122,6 +122,11 @@ def test_a_map_of_free_space_is_read_as_one_by_itself_only(tmp_path: Path) -> No
     assert (found.board, found.silhouette) == picture('#')
 
 
+def test_a_grid_with_some_booleans_is_no_map_of_free_space(tmp_path: Path) -> None:
+    [found] = read(tmp_path, 'a.json', [[True, 0], [1, 1]])
+    assert (found.board, found.silhouette) == STEP
+
+
 def test_margins_stay_if_one_says_so(tmp_path: Path) -> None:
     untrimmed = Reading(trim=False)
     [found] = read(tmp_path, 'a.json', [[0, 0, 0], [0, 1, 0]], untrimmed)

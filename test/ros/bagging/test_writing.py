@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 import yaml
 from bag_builders import START_NS, Said, add_all, contents, held_complaints, open_bag, write_bag
+from disks import watch_fsync
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
@@ -32,6 +33,22 @@ def test_bag_has_every_message_as_it_was(bag: Path, said: list[Said]) -> None:
     with AnyReader([bag]) as reader:
         found = [(entry.topic, time_ns, data) for entry, time_ns, data in reader.messages()]
     assert found == contents(bag) == expected
+
+
+def test_metadata_is_on_disk_before_it_gets_its_name(
+    tmp_path: Path, said: list[Said], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sizes = watch_fsync(monkeypatch)
+    flushed: list[bool] = []
+    replace = Path.replace
+
+    def watched(path: Path, target: Path) -> Path:
+        flushed.append(sizes[-1] == path.stat().st_size)
+        return replace(path, target)
+
+    monkeypatch.setattr(Path, 'replace', watched)
+    write_bag(tmp_path / 'bag', said)
+    assert flushed == [True]
 
 
 def test_mcap_reads_it_too(bag: Path, said: list[Said]) -> None:

@@ -198,6 +198,16 @@ def test_what_is_told_again_is_not_waited_for(by_person: Heard) -> None:
     assert again.number == turn.number == 2
 
 
+def test_next_state_waits_for_its_own_proposals(by_person: Heard) -> None:
+    """Also if as many of the state before were told again."""
+    said = by_person.messages
+    last = max(i for i, m in enumerate(said) if isinstance(m, ProposalMade))
+    first = next(i for i, m in enumerate(said) if isinstance(m, ProposalMade))
+    turn = turn_of(after(said[first + 1 : last + 1], with_told_again(after(said[: first + 1]))))
+    assert turn is not None
+    assert (turn.sequence, turn.number, turn.is_waiting) == (3, 1, True)
+
+
 def test_answers_are_those_of_the_searches(by_person: Heard) -> None:
     session = after(by_person.messages)
     answers = {m.query: m.result for m in by_person.messages if isinstance(m, SearchAnswer)}
