@@ -58,11 +58,11 @@ def test_exact_reports_a_tower_that_is_too_large(
 
 
 def test_count_reports_the_depths_that_were_finished(command: Command) -> None:
-    words = ('count', 'towers.txt', '--depth', '30', '--time-limit', '1')
+    words = ('count', 'towers.txt', '--depth', '30', '--time-limit', '4')
     code, (large, small), _ = command(*words, '--json')
     assert code == 3
     found = json.loads(large)
-    assert found['problem'] == 'not finished within the time limit of 1 s'
+    assert found['problem'] == 'not finished within the time limit of 4 s'
     assert len(found['counts']) < 30
     assert found['counts'][:1] in ([], [74])
     counts = json.loads(small)['counts']
@@ -70,11 +70,11 @@ def test_count_reports_the_depths_that_were_finished(command: Command) -> None:
 
 
 def test_solve_reports_a_trial_that_the_time_limit_ended(command: Command) -> None:
-    words = ('--strategy', 'none', '--depth', '30', '--budget', str(2**62), '--time-limit', '1')
+    words = ('--strategy', 'none', '--depth', '30', '--budget', str(2**62), '--time-limit', '4')
     code, rows, err = command('solve', 'towers.txt', '--json', *words)
     assert code == 3
     assert [json.loads(row)['status'] for row in rows] == ['cancelled', 'success']
-    said = 'towers.txt/large, seed 0: cancelled: not finished within the time limit of 1 s'
+    said = 'towers.txt/large, seed 0: cancelled: not finished within the time limit of 4 s'
     assert said in err.splitlines()
 
 
