@@ -53,14 +53,15 @@ class _Step(NamedTuple):
 
 def _step(before: _Step, region: Region, situation: Situation) -> _Step:
     """The step after one more subgoal."""
-    query = Query(before.built, region.target(before.built), before.blocks)
+    target = region.target(before.built)
     if before.missing is not None or before.status is not SolveStatus.SOLVED:
-        return before._replace(built=query.target)
+        return _Step(target, *before[1:])
+    query = Query(before.built, target, before.blocks)
     result = situation.known.get(query)
     if result is None:
-        return before._replace(built=query.target, missing=query)
+        return before._replace(built=target, missing=query)
     cost, blocks = before.cost + result.planning_cost, situation.after(query, result)
-    return _Step(query.target, cost, result.status, None, blocks)
+    return _Step(target, cost, result.status, None, blocks)
 
 
 def _shared(one: Chain, other: Chain) -> int:
