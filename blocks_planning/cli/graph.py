@@ -157,6 +157,7 @@ def run(
         placing_timeout_s=placing_timeout,
         retries=retries,
         robot=robot_for(specs, script, robot, robot_settings),
+        scenes=is_terminal(),
     )
     records = RecordFile(spec.records)
     wanted = {trial.trial_id for trial in specs}
@@ -220,6 +221,14 @@ def _drawing(wanted: bool | None, trials: int) -> Callable[[list[TrialRecord], P
     return draw
 
 
+def is_terminal() -> bool:
+    """Whether towers can be drawn on stderr while trials run."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    return console.is_interactive and console.file.isatty()
+
+
 class _Progress:
     """Progress on stderr while trials run: the tower in a terminal, otherwise a line per trial."""
 
@@ -237,7 +246,7 @@ class _Progress:
     def __enter__(self) -> None:
         from rich.live import Live
 
-        if self._console.is_interactive and self._console.file.isatty():
+        if is_terminal():
             self._live = Live(console=self._console, auto_refresh=False, transient=True)
             self._live.start()
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import pty
 import random
 import signal
 import subprocess
@@ -13,6 +15,7 @@ from typing import Any
 
 import pytest
 from graphs import (
+    COMMAND,
     bring_up,
     is_alive,
     local_lines,
@@ -68,6 +71,25 @@ def test_script_runs_to_its_end_and_is_not_run_again(tmp_path: Path) -> None:
     assert (out / 'trials.jsonl').stat().st_mtime_ns == before
     assert '3 of 3 trials' in again.stdout
     assert 'trial 1 of 3' not in again.stderr
+
+
+def test_terminal_shows_the_tower_while_it_is_built(tmp_path: Path) -> None:
+    """Elsewhere there is a line for each trial, and no message but the announcement is read."""
+    master, slave = pty.openpty()
+    command = [*COMMAND, str(write_script(tmp_path)), '--out', str(tmp_path / 'out')]
+    environment = {**os.environ, 'TERM': 'xterm-256color', 'COLUMNS': '80', 'LINES': '24'}
+    shown = b''
+    with subprocess.Popen(
+        [*command, '--pace', '0.4'], env=environment, stdout=subprocess.DEVNULL, stderr=slave
+    ) as running:
+        os.close(slave)
+        with contextlib.suppress(OSError):  # the other end is closed
+            while part := os.read(master, 1 << 16):
+                shown += part
+    os.close(master)
+    assert running.returncode == 0
+    assert '▶' in shown.decode(errors='replace')  # the chosen candidate
+    assert '┌' in shown.decode(errors='replace')  # a block that stands
 
 
 @pytest.mark.long
