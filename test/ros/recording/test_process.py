@@ -34,6 +34,7 @@ def test_stopped_recorder_finishes_its_bag(
     assert len(list(bag.glob('*.mcap'))) > 1
 
 
+@pytest.mark.long
 def test_killed_recorder_loses_what_was_not_flushed_and_goes_on(
     graph: Graph, peer: Peer, said: list[Said], tmp_path: Path
 ) -> None:
