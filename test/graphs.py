@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+import pty
 import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +54,23 @@ def run_graph(
     with bring_up(*arguments, environment=environment) as process:
         out, err = process.communicate(timeout=DEADLINE_S)
     return subprocess.CompletedProcess(process.args, process.returncode, out, err)
+
+
+def run_in_terminal(*arguments: object) -> tuple[int, str]:
+    """Bring a graph up in a terminal of 80 x 24; return its exit code, and all that it showed."""
+    ours, its = pty.openpty()
+    environment = {**os.environ, 'TERM': 'xterm-256color', 'COLUMNS': '80', 'LINES': '24'}
+    command = [*COMMAND, *map(str, arguments)]
+    shown = b''
+    with subprocess.Popen(
+        command, env=environment, stdout=subprocess.DEVNULL, stderr=its
+    ) as running:
+        os.close(its)
+        with suppress(OSError):  # the other end is closed
+            while part := os.read(ours, 1 << 16):
+                shown += part
+    os.close(ours)
+    return running.returncode, shown.decode(errors='replace')
 
 
 @contextmanager

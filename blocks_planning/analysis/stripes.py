@@ -38,8 +38,9 @@ def figure_3(trials: pd.DataFrame, decisions: pd.DataFrame, preset: str) -> Figu
     figure = new_figure(9.5, 1.25 * rows_each * len(SEARCH_NAMES) + 1)
     highest = max(map(max, (rows for rows in decisions['tops'] if len(rows))))
     with styled():
-        # All panels have the same size in cells; shared axes would only take longer to draw.
-        axes = figure.subplots(rows_each * len(SEARCH_NAMES), _ACROSS, squeeze=False)
+        axes = figure.subplots(
+            rows_each * len(SEARCH_NAMES), _ACROSS, squeeze=False, sharex=True, sharey=True
+        )
         for ax in axes.flat:
             ax.set_axis_off()
         for block, (search, name) in enumerate(SEARCH_NAMES.items()):
@@ -48,7 +49,6 @@ def figure_3(trials: pd.DataFrame, decisions: pd.DataFrame, preset: str) -> Figu
                 ax = axes[block * rows_each + place // _ACROSS][place % _ACROSS]
                 _panel(ax, stripes, tower, highest)
                 if place % _ACROSS == 0:
-                    ax.set_yticklabels(['0', f'{highest}'], fontsize=7)
                     ax.set_ylabel(f'{name}\nrows', fontsize=8)
         _colour_bar(figure, axes, highest)
         figure.supxlabel('attempts, by rising lambda; right of the gap: full', fontsize=9)
@@ -112,7 +112,7 @@ def _panel(ax: Any, stripes: dict[tuple[str, str], np.ndarray], tower: str, high
     ax.set_axis_on()
     ax.imshow(picture.swapaxes(0, 1), origin='lower', aspect='auto', interpolation='nearest')
     ax.set_xticks([])
-    ax.set_yticks([-0.5, highest - 0.5], ['', ''])
+    ax.set_yticks([-0.5, highest - 0.5], ['0', f'{highest}'], fontsize=7)
     ax.set_title(tower.rpartition('/')[2], fontsize=8, pad=2)
 
 

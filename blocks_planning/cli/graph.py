@@ -157,13 +157,13 @@ def run(
         placing_timeout_s=placing_timeout,
         retries=retries,
         robot=robot_for(specs, script, robot, robot_settings),
-        scenes=is_terminal(),
+        scenes=_is_terminal(),
     )
     records = RecordFile(spec.records)
     wanted = {trial.trial_id for trial in specs}
     done = len(wanted & records.finished)
     records.close()
-    progress = _Progress(RecordTail(spec.records), len(specs), done)
+    progress = _Progress(RecordTail(spec.records), len(specs), done, spec.scenes)
     bringup = Bringup(spec)
     click.echo(f'To join the graph: {bringup.look_in}', err=True)
     if bringup.page is not None:
@@ -221,7 +221,7 @@ def _drawing(wanted: bool | None, trials: int) -> Callable[[list[TrialRecord], P
     return draw
 
 
-def is_terminal() -> bool:
+def _is_terminal() -> bool:
     """Whether towers can be drawn on stderr while trials run."""
     from rich.console import Console
 
@@ -232,11 +232,12 @@ def is_terminal() -> bool:
 class _Progress:
     """Progress on stderr while trials run: the tower in a terminal, otherwise a line per trial."""
 
-    def __init__(self, tail: RecordTail, total: int, done: int) -> None:
+    def __init__(self, tail: RecordTail, total: int, done: int, is_drawn: bool) -> None:
         from rich.console import Console
 
         self._console: Console = Console(stderr=True)
         self._tail = tail
+        self._is_drawn = is_drawn
         self._total = total
         self._first = self._done = done
         self._began: float | None = None
@@ -246,7 +247,7 @@ class _Progress:
     def __enter__(self) -> None:
         from rich.live import Live
 
-        if is_terminal():
+        if self._is_drawn:
             self._live = Live(console=self._console, auto_refresh=False, transient=True)
             self._live.start()
 

@@ -53,8 +53,8 @@ class BringupSpec:
         placing_timeout_s: how long the world may be silent when it has to answer [s].
         retries: how often an order is given again that the world cannot carry out.
         robot: settings of a simulated robot that carries out the orders; None for no robot.
-        scenes: whether the running trial is followed. Otherwise the scene of a trial remains the
-            first one, which costs the graph a quarter less.
+        scenes: whether the scene follows the running trial. Otherwise the watcher hears only that
+            trials begin, and leaves the processors to the other nodes.
     """
 
     script: Path

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
-import pty
 import random
 import signal
 import subprocess
@@ -15,13 +13,13 @@ from typing import Any
 
 import pytest
 from graphs import (
-    COMMAND,
     bring_up,
     is_alive,
     local_lines,
     node_processes,
     record_lines,
     run_graph,
+    run_in_terminal,
     wait_until,
     write_script,
 )
@@ -31,7 +29,7 @@ from rosbags.highlevel import AnyReader
 
 from blocks_planning.ros.bagging.bags import trials_of
 from blocks_planning.ros.runtime.domain import Domain
-from blocks_planning.ros.wire.topics import MARKERS, TOPICS, TRIAL
+from blocks_planning.ros.wire.topics import MARKERS, STATE, TOPICS, TRIAL, Topic
 from blocks_planning.trials.reading import read_records
 from blocks_planning.trials.script import read_script
 from blocks_planning.trials.verify import contradictions
@@ -74,22 +72,10 @@ def test_script_runs_to_its_end_and_is_not_run_again(tmp_path: Path) -> None:
 
 
 def test_terminal_shows_the_tower_while_it_is_built(tmp_path: Path) -> None:
-    """Elsewhere there is a line for each trial, and no message but the announcement is read."""
-    master, slave = pty.openpty()
-    command = [*COMMAND, str(write_script(tmp_path)), '--out', str(tmp_path / 'out')]
-    environment = {**os.environ, 'TERM': 'xterm-256color', 'COLUMNS': '80', 'LINES': '24'}
-    shown = b''
-    with subprocess.Popen(
-        [*command, '--pace', '0.4'], env=environment, stdout=subprocess.DEVNULL, stderr=slave
-    ) as running:
-        os.close(slave)
-        with contextlib.suppress(OSError):  # the other end is closed
-            while part := os.read(master, 1 << 16):
-                shown += part
-    os.close(master)
-    assert running.returncode == 0
-    assert '▶' in shown.decode(errors='replace')  # the chosen candidate
-    assert '┌' in shown.decode(errors='replace')  # a block that stands
+    code, shown = run_in_terminal(write_script(tmp_path), '--out', tmp_path, '--pace', 0.4)
+    assert code == 0
+    assert '▶' in shown  # the chosen candidate
+    assert '┌' in shown  # a block that stands
 
 
 @pytest.mark.long
@@ -238,15 +224,26 @@ def test_two_at_once_do_not_hear_each_other(tmp_path: Path) -> None:
         assert record_lines(folder) == local_lines(script)
 
 
+def listeners(node: Node, topic: Topic) -> set[str]:
+    """The names of the nodes that subscribe to a topic in the namespace of a node."""
+    name = f'{node.get_namespace()}/{topic.name}'
+    return {one.node_name for one in node.get_subscriptions_info_by_topic(name)}
+
+
 @pytest.mark.long
 def test_namespace_and_domain_are_where_it_was_told(graph: Graph, tmp_path: Path) -> None:
-    """A peer in that namespace of that domain hears every trial."""
+    """A peer in that namespace of that domain hears every trial.
+
+    Nothing is drawn, so the bring-up itself hears of no state.
+    """
     script, out = write_script(tmp_path, seeds=2), tmp_path / 'out'
     specs = read_script(script)
     namespace = '/some/where'
     peer = graph.add(Peer, specs[0], (), TOPICS, namespace=namespace)
     domain = os.environ['ROS_DOMAIN_ID']
     with bring_up(script, '--out', out, '--namespace', namespace, '--domain', domain) as process:
+        graph.spin_until(lambda: 'subgoal_selector' in listeners(peer, STATE), deadline_s=60)
+        assert 'watcher' not in listeners(peer, STATE)
         graph.spin_until(lambda: process.poll() is not None, deadline_s=60)
     assert process.returncode == 0
     started = [message.spec for message in peer.only(TRIAL.kind)]
@@ -282,14 +279,9 @@ def test_impossible_domain_is_refused(domain: str, tmp_path: Path) -> None:
 
 def test_domains_are_claimed_until_they_are_released() -> None:
     domains = [Domain() for _ in range(5)]
-    assert len({domain.number for domain in domains} | {os_domain()}) == 6
+    assert len({domain.number for domain in domains} | {int(os.environ['ROS_DOMAIN_ID'])}) == 6
     for domain in domains:
         domain.release()
-
-
-def os_domain() -> int:
-    """The domain of this process."""
-    return int(os.environ['ROS_DOMAIN_ID'])
 
 
 @pytest.mark.long
