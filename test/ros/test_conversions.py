@@ -182,7 +182,7 @@ def test_what_a_person_says_there_and_back(seed: int) -> None:
     check_there_and_back(messages, record)
 
 
-@settings(max_examples=4)
+@settings(max_examples=20)
 @given(
     st.one_of(solvable_tasks(16, 8), positions(16).map(lambda p: Task(p[0].board, p.built))),
     st.sampled_from(planner_names()),
