@@ -135,7 +135,7 @@ def _check_trial(cls: type[Any], spec: TrialSpec) -> None:
     record = run_trial(spec, proposals=proposals)
     _require(record == run_trial(spec, proposals=proposals), cls, 'is not repeatable')
     if not spec.strategy.asks_person:
-        _require(record == follow(spec, {}), cls, 'depends on how its queries are answered')
+        _require(record == follow(spec), cls, 'depends on how its queries are answered')
     again = record_from_json(json.loads(record.to_line()), 'check')
     _require(again == record, cls, 'has a record that changes when it is written and read')
     for sentence in contradictions(record):

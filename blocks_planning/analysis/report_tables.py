@@ -61,11 +61,10 @@ def _budget(row: dict[str, Any]) -> str:
 def switch_rows(trials: pd.DataFrame) -> list[dict[str, Any]]:
     """Scoping with every combination of search settings and executed part of a subgoal.
 
-    Means are over the values of lambda that all combinations have, so that one row differs from
-    another by its settings alone.
+    Means are over the values of lambda and the seeds that all combinations have, so that one row
+    differs from another by its settings alone.
     """
     scoping = trials[(trials['strategy'] == 'scoping') & (trials['budget'] > 0)]
-    seeds = sorted(trials['seed'].unique())
     rows: list[dict[str, Any]] = []
     for search in SEARCH_NAMES:
         here = scoping[(scoping['search'] == search).to_numpy(bool)]
@@ -74,9 +73,11 @@ def switch_rows(trials: pd.DataFrame) -> list[dict[str, Any]]:
             for preset in the_paper().presets
             for commit in _COMMITS
         }
-        shared = _shared_lambdas(list(parts.values()))
+        lambdas = _shared(list(parts.values()), 'lambda')
+        seeds = _shared(list(parts.values()), 'seed')
         for (preset, commit), part in parts.items():
-            chosen = part[part['lambda'].round(9).isin(shared)]
+            is_shared = part['lambda'].round(9).isin(lambdas) & part['seed'].isin(seeds)
+            chosen = part[is_shared]
             if chosen.empty:
                 continue
             rows.append(
@@ -84,7 +85,8 @@ def switch_rows(trials: pd.DataFrame) -> list[dict[str, Any]]:
                     'search': SEARCH_NAMES[search],
                     'settings': preset,
                     'commit': commit,
-                    'lambdas': len(shared),
+                    'lambdas': len(lambdas),
+                    'seeds': len(seeds),
                     **{measure: own_mean(chosen, measure, seeds) for measure in SWITCHED},
                 }
             )
@@ -99,7 +101,7 @@ def _search_settings(preset: str) -> dict[str, str]:
     }
 
 
-def _shared_lambdas(parts: list[pd.DataFrame]) -> set[float]:
-    """The values of lambda that every part with trials has [cells / state]."""
-    values = [set(part['lambda'].round(9)) for part in parts if len(part)]
-    return set.intersection(*values) if values else set()
+def _shared(parts: list[pd.DataFrame], column: str) -> list[Any]:
+    """The values of a column that every part with trials has, rising."""
+    values = [set(part[column].round(9)) for part in parts if len(part)]
+    return sorted(set.intersection(*values)) if values else []

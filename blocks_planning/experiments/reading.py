@@ -10,6 +10,7 @@
     experiments:
       - name: bfs                # the tables have this name in a column
         budget: 100000           # optional [states]
+        seeds: 8                 # optional, if fewer than in the sweep: its first ones
         searches:
           - {name: bfs, depth: [2, 3]}
         strategies:
@@ -36,6 +37,7 @@ from blocks_planning.trials.script import (
     read_seeds,
     read_text,
     read_towers,
+    read_whole,
     read_worlds,
 )
 
@@ -62,19 +64,24 @@ def read_sweep(path: Path) -> SweepSpec:
     towers, seeds = tuple(read_towers(top)), read_seeds(top)
     experiments: list[Experiment] = []
     for item in top['experiments'].items():
-        experiment = _experiment(item)
+        experiment = _experiment(item, len(seeds))
         if experiment.name in {other.name for other in experiments}:
             raise item.fail(f'there is already an experiment {experiment.name!r}')
         experiments.append(experiment)
     return SweepSpec(read_text(top['name']), towers, seeds, tuple(experiments))
 
 
-def _experiment(item: Located) -> Experiment:
-    entries = item.entries('name', 'searches', 'strategies', optional=('budget', 'worlds'))
+def _experiment(item: Located, most_seeds: int) -> Experiment:
+    optional = ('budget', 'worlds', 'seeds')
+    entries = item.entries('name', 'searches', 'strategies', optional=optional)
+    seeds = None
+    if 'seeds' in entries:
+        seeds = read_whole(entries['seeds'], 'seeds', 1, most_seeds)
     return Experiment(
         name=read_text(entries['name']),
         searches=tuple(read_planners(entries['searches'], make_own_search)),
         strategies=tuple(read_planners(entries['strategies'], make_planner)),
         budget=read_budget(entries),
         worlds=tuple(read_worlds(entries)),
+        seeds=seeds,
     )

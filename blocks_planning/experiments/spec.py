@@ -35,6 +35,7 @@ class Experiment:
         strategies: the subgoal planners.
         budget: b of every solve [states]; 0 for a single attempt.
         worlds: the worlds.
+        seeds: number of seeds, the first ones of the sweep; None for all.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Experiment:
     strategies: tuple[Strategy, ...]
     budget: int = DEFAULT_BUDGET
     worlds: tuple[World, ...] = (Simulated(),)
+    seeds: int | None = None
 
 
 @dataclass(frozen=True)
@@ -100,12 +102,11 @@ class SweepSpec:
 
     def chunks(self) -> list[Chunk]:
         """All work, in the order of the rows in the tables."""
-        starts = range(0, len(self.seeds), SEEDS_PER_CHUNK)
         return [
-            Chunk(experiment, tower, self.seeds[start : start + SEEDS_PER_CHUNK])
+            Chunk(experiment, tower, seeds)
             for experiment in self.experiments
             for tower in self.towers
-            for start in starts
+            for seeds in _batched(self.seeds[: experiment.seeds])
         ]
 
     @cached_property
@@ -119,12 +120,21 @@ class SweepSpec:
             'name': self.name,
             'seeds': list(self.seeds),
             'towers': [_tower_to_json(tower) for tower in self.towers],
-            'experiments': [experiment_to_json(experiment) for experiment in self.experiments],
+            'experiments': [
+                {**experiment_to_json(one), **({} if one.seeds is None else {'seeds': one.seeds})}
+                for one in self.experiments
+            ],
         }
 
 
+def _batched(seeds: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
+    """The seeds of each chunk."""
+    for start in range(0, len(seeds), SEEDS_PER_CHUNK):
+        yield seeds[start : start + SEEDS_PER_CHUNK]
+
+
 def experiment_to_json(experiment: Experiment) -> dict[str, Any]:
-    """An experiment with every setting."""
+    """An experiment with every setting, without its number of seeds."""
     return {
         'name': experiment.name,
         'budget': experiment.budget,

@@ -20,6 +20,7 @@ import numpy as np
 
 from blocks_planning.board.geometry import Board
 from blocks_planning.extras import extra
+from blocks_planning.search.result import SolveStatus
 from blocks_planning.subgoals.decision import Decision
 from blocks_planning.trials.flat import FlatSetting, flat_settings, flat_values
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
@@ -158,15 +159,15 @@ def _trial_row(
 
 
 def _decision_row(record: TrialRecord, entry: DecisionRecord) -> dict[str, Any]:
-    decision = entry.decision
+    decision, candidates = entry.decision, entry.decision.candidates
     row = {
         'sequence': entry.sequence,
         'built': hex(decision.built),
-        'candidates': len(decision.candidates),
+        'candidates': len(candidates),
         'sequences': decision.sequences,
-        'solved': sum(candidate.is_solved for candidate in decision.candidates),
+        'solved': [candidate.status for candidate in candidates].count(SolveStatus.SOLVED),
         'executed': entry.executed,
-        'considered': sum(candidate.planning_cost for candidate in decision.candidates),
+        'considered': sum([candidate.planning_cost for candidate in candidates]),
         'subgoal_planning_cost': decision.subgoal_planning_cost,
     }
     return {**row, **_chosen(decision, record.spec.task.board)}

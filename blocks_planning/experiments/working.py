@@ -8,9 +8,7 @@ from contextlib import contextmanager
 
 from blocks_planning.experiments.spec import Chunk
 from blocks_planning.experiments.tables import Failure, Tables, make_tables
-from blocks_planning.search.result import SolveResult
-from blocks_planning.subgoals.decision import Query
-from blocks_planning.trials.following import follow
+from blocks_planning.trials.following import Shared, follow
 from blocks_planning.trials.limits import ended_at_a_limit
 from blocks_planning.trials.record import TrialRecord
 from blocks_planning.trials.spec import TrialSpec
@@ -22,12 +20,17 @@ def run_chunk(chunk: Chunk) -> Tables:
     A trial that can't be run becomes a row with the reason, so that one tower that exceeds a limit
     does not end a long sweep.
     """
-    outcomes: list[TrialRecord | Failure] = []
     with _collector_paused():
-        for group in chunk.groups():
-            answers: dict[Query, SolveResult] = {}
-            outcomes += [_run(spec, answers) for spec in group]
-        return make_tables(chunk.experiment.name, outcomes)
+        return _tables_of(chunk)
+
+
+def _tables_of(chunk: Chunk) -> Tables:
+    """The records end with this call, before the collector goes on: it would visit them all."""
+    outcomes: list[TrialRecord | Failure] = []
+    for group in chunk.groups():
+        shared = Shared()
+        outcomes += [_run(spec, shared) for spec in group]
+    return make_tables(chunk.experiment.name, outcomes)
 
 
 @contextmanager
@@ -42,9 +45,9 @@ def _collector_paused() -> Iterator[None]:
             gc.enable()
 
 
-def _run(spec: TrialSpec, answers: dict[Query, SolveResult]) -> TrialRecord | Failure:
+def _run(spec: TrialSpec, shared: Shared) -> TrialRecord | Failure:
     try:
-        record = follow(spec, answers)
+        record = follow(spec, shared)
     except Exception as error:  # noqa: BLE001  it is stored and shown, and the sweep fails
         return Failure(spec, f'{type(error).__name__}: {error}')
     if ended_at_a_limit(record):

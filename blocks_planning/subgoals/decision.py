@@ -8,8 +8,8 @@ restarted loses no information.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Mapping, MutableMapping, Sequence
+from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple, Protocol, TypeAlias
 
 from blocks_planning.board.blocks import Placed
@@ -49,6 +49,7 @@ class Situation:
         blocks: the blocks that stand, in the order in which they landed.
         decisions: number of decisions made earlier in the trial.
         plans_on_blocks: whether the search must know the blocks that fill a state.
+        weighed: what was weighed with the known answers, to be used again; see :class:`Weighed`.
     """
 
     task: Task
@@ -59,6 +60,7 @@ class Situation:
     blocks: tuple[Placed, ...] = ()
     decisions: int = 0
     plans_on_blocks: bool = False
+    weighed: MutableMapping[Hashable, Weighed] = field(default_factory=dict, compare=False)
 
     @property
     def start(self) -> tuple[Placed, ...]:
@@ -70,8 +72,7 @@ class Situation:
         return (*query.blocks, *result.placements) if self.plans_on_blocks else ()
 
 
-@dataclass(frozen=True)
-class Candidate:
+class Candidate(NamedTuple):
     """A considered chain of regions (a single region if scoping looks one subgoal ahead).
 
     Attributes:
@@ -95,6 +96,20 @@ class Candidate:
     def is_solved(self) -> bool:
         """Whether every subgoal of the chain is solved."""
         return self.status is SolveStatus.SOLVED
+
+
+class Weighed(NamedTuple):
+    """The chains of a state whose queries are all answered, and what they add and cost.
+
+    This is the same for every lambda, and trials that differ in it come through the same states.
+
+    Attributes:
+        candidates: the chains, still without values.
+        sequences: number of chains that exist.
+    """
+
+    candidates: tuple[Candidate, ...]
+    sequences: int
 
 
 @dataclass(frozen=True)

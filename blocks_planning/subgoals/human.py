@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 from blocks_planning.settings import setting
 from blocks_planning.subgoals.choosing import first_solved
-from blocks_planning.subgoals.decision import Candidate, Chain, Decision, Query, Situation
+from blocks_planning.subgoals.decision import (
+    Candidate,
+    Chain,
+    Decision,
+    Query,
+    Situation,
+    Weighed,
+)
 from blocks_planning.subgoals.planner import Planner, queries_along
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind, decisive
 from blocks_planning.subgoals.regions import drawn_region
@@ -68,7 +75,7 @@ class Human(Planner):
     def _decided(self, chains: list[Chain], situation: Situation) -> Decision:
         weighed = self.weighed(chains, situation)
         candidates = tuple(one for one in weighed if isinstance(one, Candidate))
-        return replace(self.decision(candidates, situation), sequences=len(candidates))
+        return self.decision(Weighed(candidates, len(candidates)), situation)
 
 
 def used(situation: Situation, decision: Decision) -> tuple[Proposal, ...]:

@@ -13,7 +13,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -29,6 +29,7 @@ from blocks_planning.subgoals.decision import (
     Query,
     Situation,
     Subgoal,
+    Weighed,
 )
 from blocks_planning.subgoals.regions import Region
 
@@ -87,6 +88,14 @@ class Planner(Configured):
         return False
 
     @property
+    def view(self) -> Hashable:
+        """What its chains depend on besides state and seed; None if they depend on more.
+
+        Planners with equal views list the same chains, so what they add and cost is used again.
+        """
+        return None
+
+    @property
     def hides_costs(self) -> bool:
         """Whether planning costs must not be shown while a trial runs."""
         return False
@@ -127,19 +136,24 @@ class Planner(Configured):
 
     def decide(self, situation: Situation) -> list[Query] | Decision:
         """See :class:`Strategy`."""
-        missing: dict[Query, None] = {}
-        candidates = []
-        for weighed in self.weighed(self.chains(situation), situation):
-            if isinstance(weighed, Query):
-                missing[weighed] = None
-            else:
-                candidates.append(weighed)
-        if missing:
-            return list(missing)
-        return self.decision(self.rated(candidates, situation), situation)
+        view, weighed = self.view, None
+        key = (view, situation.built, situation.start)
+        if view is not None:
+            weighed = situation.weighed.get(key)
+        if weighed is None:
+            found = list(self.weighed(self.chains(situation), situation))
+            if missing := dict.fromkeys(one for one in found if isinstance(one, Query)):
+                return list(missing)
+            candidates = tuple(one for one in found if isinstance(one, Candidate))
+            weighed = Weighed(candidates, self.sequences(situation))
+            if view is not None:
+                situation.weighed[key] = weighed
+        return self.decision(weighed, situation)
 
-    def decision(self, candidates: tuple[Candidate, ...], situation: Situation) -> Decision:
+    def decision(self, weighed: Weighed, situation: Situation) -> Decision:
         """The decision between candidates whose queries are all answered."""
+        valued = [self._valued(candidate) for candidate in weighed.candidates]
+        candidates = self.rated(valued, situation)
         chosen = self.choose(candidates, situation)
         chain = () if chosen is None else candidates[chosen].regions
         return Decision(
@@ -148,13 +162,20 @@ class Planner(Configured):
             chosen=chosen,
             subgoals=tuple(self.plan(chain, situation)),
             subgoal_planning_cost=self.considered(candidates),
-            sequences=self.sequences(situation),
+            sequences=weighed.sequences,
         )
+
+    def _valued(self, candidate: Candidate) -> Candidate:
+        """A candidate with its value, if all its subgoals are solved."""
+        if candidate.status is not SolveStatus.SOLVED:
+            return candidate
+        regions, cells, cost, _, status, _ = candidate
+        return Candidate(regions, cells, cost, self.value(cells, cost), status)
 
     def weighed(
         self, chains: Iterable[Chain], situation: Situation
     ) -> Iterator[Candidate | Query]:
-        """The candidate of each chain, or its first query without an answer.
+        """The candidate of each chain, without a value, or its first query without an answer.
 
         The part that a chain has in common with the previous one is not computed again.
         """
@@ -167,12 +188,8 @@ class Planner(Configured):
             for region in chain[shared:]:
                 steps.append(_step(steps[-1], region, situation))
             before, last = chain, steps[-1]
-            yield last.missing or self._candidate(chain, area(last.built) - size, last)
-
-    def _candidate(self, chain: Chain, cells: int, last: _Step) -> Candidate:
-        solved = last.status is SolveStatus.SOLVED
-        value = self.value(cells, last.cost) if solved else None
-        return Candidate(chain, cells, last.cost, value, last.status)
+            cells = area(last.built) - size
+            yield last.missing or Candidate(chain, cells, last.cost, None, last.status)
 
     def plan(self, chain: Chain, situation: Situation) -> Iterator[Subgoal]:
         """The subgoals of a chosen chain, with the plans that fill them."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar
 
 from blocks_planning.settings import member, setting
@@ -65,6 +66,13 @@ class Scoping(Planner):
         choices=AGGREGATES,
     )
 
+    @cached_property
+    def view(self) -> Scoping:
+        """See :class:`Planner`. This planner without the settings that only matter afterwards."""
+        return replace(
+            self, lam=0.0, commit='subgoal', choice='best', temperature=1.0, aggregate='best'
+        )
+
     def chains(self, situation: Situation) -> Sequence[Chain]:
         """Each region alone, or the sequences of :mod:`.lookahead`."""
         return self._considered(situation).chains
@@ -85,7 +93,7 @@ class Scoping(Planner):
             return tuple(candidates)
         chances = probabilities(candidates, self.temperature, self.aggregate)
         return tuple(
-            replace(candidate, probability=chance)
+            candidate._replace(probability=chance)
             for candidate, chance in zip(candidates, chances, strict=True)
         )
 

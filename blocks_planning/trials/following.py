@@ -8,7 +8,8 @@ solve depends on nothing else.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, MutableMapping
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass, field
 
 from blocks_planning.board import rules
 from blocks_planning.board.blocks import Placement
@@ -16,7 +17,7 @@ from blocks_planning.errors import ConfigurationError
 from blocks_planning.external import refuse_external
 from blocks_planning.search.many import solve_many
 from blocks_planning.search.result import Problem, SolveResult
-from blocks_planning.subgoals.decision import Decision, Query, Situation, Subgoal
+from blocks_planning.subgoals.decision import Decision, Query, Situation, Subgoal, Weighed
 from blocks_planning.trials.record import DecisionRecord, TrialRecord
 from blocks_planning.trials.spec import TrialSpec
 from blocks_planning.trials.status import TrialStatus
@@ -24,15 +25,26 @@ from blocks_planning.trials.world import TOO_MANY, status_of
 from blocks_planning.worlds.observation import MAX_OBSERVATIONS, Blocks, Observation, mask_of
 
 
-def follow(
-    spec: TrialSpec, answers: MutableMapping[Query, SolveResult], workers: int = 1
-) -> TrialRecord:
+@dataclass(frozen=True)
+class Shared:
+    """What trials of one task, search, seed and budget share.
+
+    Attributes:
+        answers: to queries.
+        weighed: chains whose queries are all answered.
+    """
+
+    answers: dict[Query, SolveResult] = field(default_factory=dict)
+    weighed: dict[Hashable, Weighed] = field(default_factory=dict)
+
+
+def follow(spec: TrialSpec, shared: Shared | None = None, workers: int = 1) -> TrialRecord:
     """Run a trial to its end.
 
     Args:
         spec: the trial.
-        answers: known answers for this task, search, seed and budget; new ones are added. The
-            record counts the cost of a known answer as if it had been computed again.
+        shared: of trials of this task, search, seed and budget; what is new is added. The record
+            counts the cost of a known answer as if it had been computed again.
         workers: threads that solve the queries of a decision; 1 where processes run side by side.
 
     Raises:
@@ -41,11 +53,11 @@ def follow(
     """
     if not spec.world.simulates:
         raise ConfigurationError(f'world {spec.world.name} cannot be simulated')
-    board = _Board(spec)
+    board, shared = _Board(spec), shared or Shared()
     decisions: list[DecisionRecord] = []
     status, reason = board.status(), ''
     while status is TrialStatus.BUILDING:
-        decision = _decide(spec, board.situation(len(decisions), answers), answers, workers)
+        decision = _decide(spec, board.situation(len(decisions), shared), shared, workers)
         start, executed = len(board.observations) - 1, 0
         if decision.chosen is None:
             status = TrialStatus.GAVE_UP
@@ -72,7 +84,7 @@ def run_trials(specs: Iterable[TrialSpec], workers: int = 1) -> list[TrialRecord
         ConfigurationError: for a strategy that asks a person, another program, or a world that is observed.
         LimitExceeded: if a problem exceeds a size limit of the search.
     """
-    shared: defaultdict[object, dict[Query, SolveResult]] = defaultdict(dict)
+    shared: defaultdict[object, Shared] = defaultdict(Shared)
     return [
         follow(spec, shared[spec.task, spec.search, spec.seed, spec.budget], workers)
         for spec in specs
@@ -86,8 +98,8 @@ def decide(spec: TrialSpec, workers: int = 1) -> Decision:
         ConfigurationError: for a strategy that asks a person, or another program.
         LimitExceeded: if a problem exceeds a size limit of the search.
     """
-    answers: dict[Query, SolveResult] = {}
-    return _decide(spec, _Board(spec).situation(0, answers), answers, workers)
+    shared = Shared()
+    return _decide(spec, _Board(spec).situation(0, shared), shared, workers)
 
 
 class _Board:
@@ -103,16 +115,17 @@ class _Board:
         """The status of the board."""
         return status_of(self._spec, self._blocks, self._built)
 
-    def situation(self, decisions: int, known: MutableMapping[Query, SolveResult]) -> Situation:
+    def situation(self, decisions: int, shared: Shared) -> Situation:
         """The situation for the next decision."""
         return Situation(
             task=self._spec.task,
             built=self._built,
             seed=self._spec.seed,
-            known=known,
+            known=shared.answers,
             blocks=self._blocks,
             decisions=decisions,
             plans_on_blocks=self._spec.plans_on_blocks,
+            weighed=shared.weighed,
         )
 
     def carry_out(self, subgoal: Subgoal) -> tuple[TrialStatus, bool]:
@@ -153,12 +166,7 @@ class _Board:
         self._built |= mask_of(self._spec.task.board, landed)
 
 
-def _decide(
-    spec: TrialSpec,
-    situation: Situation,
-    answers: MutableMapping[Query, SolveResult],
-    workers: int,
-) -> Decision:
+def _decide(spec: TrialSpec, situation: Situation, shared: Shared, workers: int) -> Decision:
     refuse_external(strategy=spec.strategy, search=spec.search)
     while True:
         answer = spec.strategy.decide(situation)
@@ -168,4 +176,4 @@ def _decide(
             raise ConfigurationError(f'strategy {spec.strategy.name} needs a person')
         problems = [Problem(spec.task, *query) for query in answer]
         results = solve_many(problems, spec.search, spec.seed, spec.budget, workers=workers)
-        answers.update(zip(answer, results, strict=True))
+        shared.answers.update(zip(answer, results, strict=True))

@@ -38,12 +38,10 @@ class Observation(NamedTuple):
     @property
     def is_as_ordered(self) -> bool:
         """Whether the ordered block, and nothing else, landed in the ordered column."""
-        return (
-            self.ordered is not None
-            and not self.gone
-            and len(self.landed) == 1
-            and self.landed[0].placement == self.ordered
-        )
+        if self.ordered is None or self.gone or len(self.landed) != 1:
+            return False
+        width, height, column, _ = self.landed[0]
+        return self.ordered == ((width, height), column)
 
 
 Observations = tuple[Observation, ...]

@@ -11,13 +11,13 @@ from blocks_planning.analysis.report_tables import switch_rows, table_1_rows
 from blocks_planning.analysis.trials import MEASURES
 
 
-def scoping(lam: float, commit: str, dead_ends: str, cost: float) -> dict[str, Any]:
+def scoping(lam: float, commit: str, dead_ends: str, cost: float, seed: int = 0) -> dict[str, Any]:
     return {
         'stimulus': 'a',
         'strategy': 'scoping',
         'search': 'bfs',
         'budget': 100,
-        'seed': 0,
+        'seed': seed,
         'lambda': lam,
         'commit': commit,
         'dead_ends': dead_ends,
@@ -29,11 +29,12 @@ def scoping(lam: float, commit: str, dead_ends: str, cost: float) -> dict[str, A
     }
 
 
-def test_means_are_over_the_values_of_lambda_that_all_have() -> None:
+def test_means_are_over_the_values_of_lambda_and_seeds_that_all_have() -> None:
     rows = [
         scoping(0.0, 'subgoal', 'worst', 1),
         scoping(0.004, 'subgoal', 'worst', 1000),  # is not in the other part
         scoping(0.008, 'subgoal', 'worst', 3),
+        scoping(0.008, 'subgoal', 'worst', 1000, seed=1),  # nor is this
         scoping(0.0, 'action', 'worst', 5),
         scoping(0.008, 'action', 'worst', 7),
     ]
@@ -41,9 +42,10 @@ def test_means_are_over_the_values_of_lambda_that_all_have() -> None:
     found = switch_rows(
         pd.DataFrame(rows).astype({**dict.fromkeys(words, 'category'), 'success': bool})
     )
-    assert [(row['settings'], row['commit'], row['lambdas']) for row in found] == [
-        ('published', 'subgoal', 2),
-        ('published', 'action', 2),
+    keys = ('settings', 'commit', 'lambdas', 'seeds')
+    assert [tuple(row[key] for key in keys) for row in found] == [
+        ('published', 'subgoal', 2, 1),
+        ('published', 'action', 2, 1),
     ]
     assert [row['action_planning_cost']['mean'] for row in found] == [2, 6]
 

@@ -71,6 +71,16 @@ def test_more_seeds_keep_the_chunks_there_are(tmp_path: Path) -> None:
     assert {c.chunk_id for c in few.chunks()} < {c.chunk_id for c in many.chunks()}
 
 
+def test_experiment_can_have_the_first_seeds_alone(tmp_path: Path) -> None:
+    whole = read_sweep(written(tmp_path, GOOD))
+    few = read_sweep(written(tmp_path, GOOD.replace('budget: 1000', 'budget: 1000\n    seeds: 9')))
+    assert [chunk.seeds for chunk in few.chunks()] == 2 * [tuple(range(5, 13)), (13,)]
+    assert {c.chunk_id for c in few.chunks()} & {c.chunk_id for c in whole.chunks()}
+    assert few.sweep_id != whole.sweep_id
+    assert few.to_json()['experiments'][0]['seeds'] == 9
+    assert 'seeds' not in whole.to_json()['experiments'][0]
+
+
 @pytest.mark.parametrize('name', ['paper', 'paper_quick', 'beyond'])
 def test_sweeps_of_the_package_can_be_read(name: str) -> None:
     assert read_sweep(find_sweep(name)).chunks()
@@ -95,6 +105,7 @@ def test_sweeps_of_the_package_can_be_read(name: str) -> None:
         ('name: mine', 'name: }', r'line 1: is not YAML'),
         ('first_seed: 5', 'seeds: 5', r"line 5, key 'seeds': appears twice"),
         ('budget: 1000', 'budget: many', r"line 8, key 'budget': budget must be a whole number"),
+        ('budget: 1000', 'seeds: 11', r"line 8, key 'seeds': seeds must be a whole number from 1"),
     ],
 )
 def test_error_names_file_line_and_key(tmp_path: Path, old: str, new: str, message: str) -> None:

@@ -44,9 +44,7 @@ CASES: list[tuple[Search, Strategy, float, float, float]] = [
 def runs(search: Search, strategy: Strategy) -> Iterator[list[TrialRecord]]:
     for s in find_stimuli('cogsci2021'):
         task = Task(s.board, s.silhouette)
-        yield [
-            follow(TrialSpec(s.name, task, strategy, search, seed), {}) for seed in range(SEEDS)
-        ]
+        yield [follow(TrialSpec(s.name, task, strategy, search, seed)) for seed in range(SEEDS)]
 
 
 def standard_error(rows: list[np.ndarray]) -> float:

@@ -148,7 +148,7 @@ def test_planner_that_knows_what_falls_builds_no_tower_that_does(strategy: str) 
             record = run_trial(replace(spec, world=loose))
             found.add(record.status)
             assert [*contradictions(record), *differs_from_rerun(record)] == []
-            assert follow(record.spec, {}) == record
+            assert follow(record.spec) == record
     assert ends['random'] == {TrialStatus.SUCCESS, TrialStatus.COLLAPSED}
     assert ends['stable_random'] == {TrialStatus.SUCCESS}
 

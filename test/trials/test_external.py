@@ -100,7 +100,7 @@ def changed(record: TrialRecord, change: Callable[[Decision], Decision]) -> Tria
 def of_chosen(decision: Decision, **values: Any) -> Decision:
     assert decision.chosen is not None
     candidates = list(decision.candidates)
-    candidates[decision.chosen] = replace(candidates[decision.chosen], **values)
+    candidates[decision.chosen] = candidates[decision.chosen]._replace(**values)
     return replace(decision, candidates=tuple(candidates))
 
 

@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import builders
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import solvable_tasks, tasks
 
-from blocks_planning.board.blocks import PAPER_LIBRARY
+from blocks_planning.board.blocks import PAPER_LIBRARY, Placed
 from blocks_planning.board.stimuli import find_stimuli
 from blocks_planning.board.task import Task
-from blocks_planning.search.result import SolveResult
 from blocks_planning.search.searches import AStar, BestFirst, BreadthFirst, Exact, RandomPlacement
-from blocks_planning.subgoals.decision import Query
+from blocks_planning.search.stable import StableBreadthFirst
+from blocks_planning.settings import setting
+from blocks_planning.subgoals.decision import Chain, Situation
 from blocks_planning.subgoals.full import FullSubgoals
 from blocks_planning.subgoals.none import NoSubgoals
 from blocks_planning.subgoals.regions import Rectangles
 from blocks_planning.subgoals.scoping import Scoping
-from blocks_planning.trials.following import follow
+from blocks_planning.trials.following import Shared, follow
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.spec import TrialSpec
+from blocks_planning.trials.status import TrialStatus
 
 PLANNERS = [
     NoSubgoals(),
@@ -37,6 +44,7 @@ SEARCHES = [
     BestFirst(16),
     RandomPlacement(),
     Exact(),
+    StableBreadthFirst(1),
 ]
 
 
@@ -52,9 +60,9 @@ def specs(task: Task, search: object, seed: int, budget: int) -> list[TrialSpec]
     budget=st.sampled_from([0, 50, 2000]),
 )
 def test_record_is_that_of_the_parts(task: Task, search: object, seed: int, budget: int) -> None:
-    answers: dict[Query, SolveResult] = {}  # shared: who asked first must not matter
+    shared = Shared()  # who asked first must not matter
     for spec in specs(task, search, seed, budget):
-        assert follow(spec, answers).to_json() == run_trial(spec).to_json()
+        assert follow(spec, shared).to_json() == run_trial(spec).to_json()
 
 
 @pytest.mark.parametrize('tower', ['12', pytest.param('13', marks=pytest.mark.long)])
@@ -64,6 +72,44 @@ def test_record_is_that_of_the_parts(task: Task, search: object, seed: int, budg
 def test_record_of_a_tower_of_the_paper(tower: str, search: object) -> None:
     [stimulus] = find_stimuli(f'cogsci2021/{tower}')
     task = Task(stimulus.board, stimulus.silhouette, PAPER_LIBRARY)
-    answers: dict[Query, SolveResult] = {}
+    shared = Shared()
     for spec in specs(task, search, seed=5, budget=5_000):
-        assert follow(spec, answers).to_json() == run_trial(spec).to_json()
+        assert follow(spec, shared).to_json() == run_trial(spec).to_json()
+
+
+@dataclass(frozen=True)
+class Choosy(Scoping):
+    """Scoping that leaves out its first regions."""
+
+    name: ClassVar[str] = 'choosy'
+    skipped: int = setting(1, 'Number of regions that are left out.')
+
+    def chains(self, situation: Situation) -> Sequence[Chain]:
+        """All but the first ones, or the last one."""
+        return super().chains(situation)[self.skipped :] or super().chains(situation)[-1:]
+
+
+def test_planners_that_differ_in_their_chains_share_answers_alone() -> None:
+    [stimulus] = find_stimuli('cogsci2021/13')
+    task = Task(stimulus.board, stimulus.silhouette, PAPER_LIBRARY)
+    shared, considered = Shared(), set()
+    for planner in (Scoping(), Choosy(), Choosy(skipped=2), Scoping(aim='most')):
+        spec = TrialSpec('tower', task, planner, BreadthFirst(1))
+        record = follow(spec, shared)
+        assert record == follow(spec)
+        considered.add(len(record.decisions[0].decision.candidates))
+    assert len(considered) == 3
+
+
+def test_same_cells_of_other_blocks_are_weighed_anew() -> None:
+    """A block at the edge falls from two short blocks, and stands on a long one."""
+    task = builders.task('#.../####/.##.', library='1x1,2x1,4x1')
+    middle = Placed(2, 1, 1, 0)
+    short = (middle, Placed(2, 1, 0, 1), Placed(2, 1, 2, 1))
+    long = (middle, Placed(4, 1, 0, 1))
+    search = StableBreadthFirst(1)
+    specs = [TrialSpec('tower', task, Scoping(), search, built=blocks) for blocks in (short, long)]
+    shared = Shared()
+    records = [follow(spec, shared) for spec in specs]
+    assert records == [follow(spec) for spec in specs]
+    assert [record.status for record in records] == [TrialStatus.GAVE_UP, TrialStatus.SUCCESS]

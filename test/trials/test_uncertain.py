@@ -15,15 +15,14 @@ from blocks_planning.board.blocks import PAPER_LIBRARY, Placed
 from blocks_planning.board.stimuli import find_stimuli
 from blocks_planning.board.task import Task
 from blocks_planning.errors import RecordError
-from blocks_planning.search.result import SolveResult
 from blocks_planning.search.searches import BreadthFirst
-from blocks_planning.subgoals.decision import Query, Strategy
+from blocks_planning.subgoals.decision import Strategy
 from blocks_planning.subgoals.full import FullSubgoals
 from blocks_planning.subgoals.none import NoSubgoals
 from blocks_planning.subgoals.scoping import Scoping
 from blocks_planning.trials import following
 from blocks_planning.trials import world as world_part
-from blocks_planning.trials.following import follow
+from blocks_planning.trials.following import Shared, follow
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.reading import record_from_json
 from blocks_planning.trials.record import TrialRecord
@@ -75,7 +74,7 @@ def test_records_of_small_towers_hold(strategy: Strategy, world: World) -> None:
         for seed in range(3):
             spec = trial(rows, strategy, world, seed)
             record = run_trial(spec)
-            assert follow(spec, {}).to_json() == record.to_json()
+            assert follow(spec).to_json() == record.to_json()
             holds_everywhere(record)
 
 
@@ -85,11 +84,11 @@ def test_records_of_small_towers_hold(strategy: Strategy, world: World) -> None:
 def test_records_of_towers_of_the_paper_hold(tower: str) -> None:
     [stimulus] = find_stimuli(f'cogsci2021/{tower}')
     paper = Task(stimulus.board, stimulus.silhouette, PAPER_LIBRARY)
-    answers: dict[Query, SolveResult] = {}
+    shared = Shared()
     for strategy in STRATEGIES:
         for world in WORLDS:
             spec = TrialSpec(tower, paper, strategy, BreadthFirst(1), 3, 2000, world)
-            record = follow(spec, answers)
+            record = follow(spec, shared)
             assert run_trial(spec).to_json() == record.to_json()
             holds_everywhere(record)
 
@@ -107,8 +106,8 @@ def test_without_chance_it_is_the_obedient_world(strategy: Strategy, rows: str) 
             return False
 
     for seed in range(3):
-        plain = follow(trial(rows, strategy, Simulated(), seed), {})
-        asked = follow(trial(rows, strategy, Asked(), seed), {})
+        plain = follow(trial(rows, strategy, Simulated(), seed))
+        asked = follow(trial(rows, strategy, Asked(), seed))
         assert asked.to_line() == plain.to_line()
 
 
@@ -178,7 +177,7 @@ def test_trials_end_at_the_most_observations(monkeypatch: pytest.MonkeyPatch, li
         spec = trial(rows, strategy, Simulated(slip=0.1, loss=0.4), seed)
         record = run_trial(spec)
         assert len(record.observations) <= limit
-        assert follow(spec, {}).to_json() == record.to_json()
+        assert follow(spec).to_json() == record.to_json()
         holds_everywhere(record)
         statuses.add(record.status)
     assert TrialStatus.CANCELLED in statuses
@@ -190,7 +189,7 @@ def test_a_world_that_always_loses_ends_the_trial() -> None:
     assert len(record.observations) == MAX_OBSERVATIONS
     assert 'observations' in record.reason
     assert len(record.decisions) == 1
-    assert follow(record.spec, {}).to_json() == record.to_json()
+    assert follow(record.spec).to_json() == record.to_json()
 
 
 def test_loose_towers_collapse_and_nothing_follows() -> None:

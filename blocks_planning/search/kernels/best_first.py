@@ -29,7 +29,7 @@ from blocks_planning.search.kernels.randomness import below
 
 _MOVE_BITS = 16  # a move is below 64 blocks * 256 cells = 2**14
 _MOVE = (1 << _MOVE_BITS) - 1
-_FIRST_CAPACITY = 16
+_FIRST_CAPACITY = 128
 _START, _SIZE, _CAPACITY = 0, 1, 2
 
 
@@ -82,7 +82,7 @@ def _room(search, value, more, used):
     capacity = buckets[_CAPACITY, value]
     if size + more <= capacity:
         return used
-    capacity = max(2 * capacity, size + more, _FIRST_CAPACITY)
+    capacity = max(4 * capacity, size + more, _FIRST_CAPACITY)
     if used + capacity <= arena.size:
         for index in range(size):
             arena[used + index] = arena[start + index]

@@ -36,11 +36,12 @@ def move_number(tables, moves, index):
     """The legal move with a number in the order of generation, from 0."""
     for block in range(tables.area.size):
         places = load(moves, block)
-        while not is_empty(places):
-            if index == 0:
-                return block * tables.cells + lowest(places)
-            index -= 1
-            places = without_lowest(places)
+        children = count(places)
+        if index < children:
+            for _ in range(index):
+                places = without_lowest(places)
+            return block * tables.cells + lowest(places)
+        index -= children
     return -1
 
 

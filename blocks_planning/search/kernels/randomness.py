@@ -41,10 +41,11 @@ def seed(generator, key, attempt):
 def below(generator, bound):
     """A number from 0 to ``bound - 1``, each equally likely, int64; bound is int64, positive."""
     size = np.uint64(bound)
-    rest = (_ZERO - size) % size  # 2**64 modulo bound
     while True:
         key = generator[0] + _GAMMA
         generator[0] = key
         draw = mix(key)
-        if draw <= ~rest:  # draw < 2**64 - rest
+        # A draw is taken below the largest multiple of ``size``, which is 2**64 - rest. Nearly all
+        # are at least ``size`` below 2**64 and need no rest: a division takes long.
+        if draw < _ZERO - size or draw <= ~((_ZERO - size) % size):
             return np.int64(draw % size)

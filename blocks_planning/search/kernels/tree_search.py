@@ -125,18 +125,17 @@ def _bound(search, tables, node, child):
 def _select_child(search, tables, node, generator):
     """A child of highest upper confidence bound, uniformly among equals; all have visits."""
     first, end = search.first[node], search.first[node] + search.children[node]
-    best, ties = -1.0, 0
+    best, ties, chosen = -1.0, 0, first
     for child in range(first, end):
         bound = _bound(search, tables, node, child)
         if bound > best:
-            best, ties = bound, 0
+            best, ties, chosen = bound, 0, child
         ties += bound == best
     index = below(generator, ties)
-    for child in range(first, end):
-        index -= _bound(search, tables, node, child) == best
-        if index < 0:
-            return child
-    return first
+    while index > 0:
+        chosen += 1
+        index -= _bound(search, tables, node, chosen) == best
+    return chosen
 
 
 @inlined

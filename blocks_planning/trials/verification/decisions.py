@@ -6,7 +6,6 @@ The strategy itself provides its chains, values and choice; this module knows no
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from blocks_planning.board.geometry import Mask
 from blocks_planning.search.result import SolveResult, SolveStatus
@@ -150,7 +149,7 @@ def _wrong_costs(record: TrialRecord, decision: Decision) -> Iterator[str]:
 
 def _wrong_ratings(record: TrialRecord, decision: Decision, situation: Situation) -> Iterator[str]:
     strategy = record.spec.strategy
-    unrated = [replace(candidate, probability=None) for candidate in decision.candidates]
+    unrated = [candidate._replace(probability=None) for candidate in decision.candidates]
     if strategy.rated(unrated, situation) != decision.candidates:
         yield 'the probabilities of the candidates differ from those of the strategy'
     sequences = strategy.sequences(situation)
