@@ -6,10 +6,11 @@
     DIR/trials.parquet      see :mod:`.tables`; written at the end
     DIR/decisions.parquet
     DIR/placements.parquet
-    DIR/parts/ID/           the tables of each chunk, until the end
+    DIR/chunks/ID/          the tables of each chunk, until the end
 
 A part is written under another name and then renamed, so an existing part is complete. The parts
-on disk determine which chunks are missing.
+on disk determine which chunks are missing. Their tables are Arrow files, which are written and read
+several times as fast as Parquet.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ class Store:
     def __init__(self, folder: Path, sweep: SweepSpec) -> None:
         self.folder = folder
         self._sweep = sweep
-        self._parts = folder / 'parts'
+        self._parts = folder / 'chunks'
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -84,23 +85,34 @@ class Store:
     def missing(self) -> list[Chunk]:
         """The chunks that have not been run yet."""
         chunks = self._sweep.chunks()
-        return [chunk for chunk in chunks if not (self._parts / chunk.chunk_id).is_dir()]
+        return [chunk for chunk in chunks if not self._part(chunk).is_dir()]
 
     def add(self, chunk: Chunk, tables: Tables) -> None:
         """Keep the tables of a chunk."""
         half = self._parts / f'{chunk.chunk_id}.half'
         shutil.rmtree(half, ignore_errors=True)
         half.mkdir(parents=True)
-        _write(half, tables)
-        half.rename(self._parts / chunk.chunk_id)
+        for name, table in zip(Tables._fields, tables, strict=True):
+            with pa.ipc.new_file(half / f'{name}.arrow', table.schema) as file:
+                file.write_table(table)
+        half.rename(self._part(chunk))
+
+    def _part(self, chunk: Chunk) -> Path:
+        return self._parts / chunk.chunk_id
+
+    def _read(self, chunk: Chunk) -> Tables:
+        part = self._part(chunk)
+        names = [str(part / f'{name}.arrow') for name in Tables._fields]
+        return Tables(*(pa.ipc.open_file(pa.memory_map(name)).read_all() for name in names))
 
     def finish(self) -> None:
         """Write the tables from all parts, in the order of the sweep, and delete the parts."""
-        chunks = self._sweep.chunks()
         half = self.folder / 'tables.half'
         shutil.rmtree(half, ignore_errors=True)
         half.mkdir()
-        _write(half, join([_read(self._parts / chunk.chunk_id) for chunk in chunks]))
+        tables = join([self._read(chunk) for chunk in self._sweep.chunks()])
+        for name, table in zip(Tables._fields, tables, strict=True):
+            pq.write_table(table, half / f'{name}.parquet', compression='zstd')
         for name in reversed(Tables._fields):
             (half / f'{name}.parquet').replace(self.folder / f'{name}.parquet')
         half.rmdir()
@@ -117,12 +129,3 @@ def read_table(folder: Path, name: str, columns: list[str] | None = None) -> pa.
     if not path.is_file():
         raise ConfigurationError(f'{path}: does not exist; has the sweep been finished?')
     return pq.read_table(path, columns=columns)
-
-
-def _read(folder: Path) -> Tables:
-    return Tables(*(read_table(folder, name) for name in Tables._fields))
-
-
-def _write(folder: Path, tables: Tables) -> None:
-    for name, table in zip(Tables._fields, tables, strict=True):
-        pq.write_table(table, folder / f'{name}.parquet', compression='zstd')

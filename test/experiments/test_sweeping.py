@@ -85,10 +85,10 @@ def test_interrupted_sweep_goes_on(
 
     with pytest.raises(KeyboardInterrupt):
         run_sweep(sweep(), tmp_path, workers, report=interrupt)
-    there = {part.name for part in (tmp_path / 'parts').iterdir()}
+    there = {part.name for part in (tmp_path / 'chunks').iterdir()}
     assert 1 <= len(there) < len(sweep().chunks())
     left = next(c for c in sweep().chunks() if c.chunk_id not in there)
-    (tmp_path / 'parts' / f'{left.chunk_id}.half').mkdir()  # killed while it was written
+    (tmp_path / 'chunks' / f'{left.chunk_id}.half').mkdir()  # killed while it was written
     ran: list[str] = []
 
     def run(chunk: Chunk) -> Tables:
@@ -102,7 +102,7 @@ def test_interrupted_sweep_goes_on(
     assert (reported[0], reported[-1]) == ((done, 360), (360, 360))
     assert set(ran) == {chunk.chunk_id for chunk in sweep().chunks()} - there
     assert tables_in(tmp_path) == whole
-    assert not (tmp_path / 'parts').exists()
+    assert not (tmp_path / 'chunks').exists()
 
 
 def test_finished_sweep_is_not_run_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -44,21 +44,35 @@ class Walks(NamedTuple):
     slots: np.ndarray  # int32 (2**k,), at least twice n: a hash table of outlines, -1 where free
     ended: np.ndarray  # uint64 (1, words): sequences after which no legal placement is left
     moves: np.ndarray  # mask (blocks,)
+    after: np.ndarray  # mask (children,): the outlines after each placement
+    keeps: np.ndarray  # bool (children,): whether it leaves no hole in the region
+    near: np.ndarray  # int32 (children,): the outline in the first slot of each, or -1
+    read: np.ndarray  # uint64 (1,): a sum over rows that were read ahead; has no meaning
 
 
 def make_walks(
     size: int, mask_shape: tuple[int, ...], words: int, cells: int, blocks: int
 ) -> Walks:
-    """Memory for up to ``size`` outlines; untouched memory is not allocated by the system."""
+    """Memory for up to ``size`` outlines; untouched memory is not allocated by the system.
+
+    The shadow and the numbers of an outline are one row, because they are needed together.
+    """
+    width = int(np.prod(mask_shape))
+    rows = np.empty((size, width + 2 * words), np.uint64)
+    most = blocks * cells
     return Walks(
-        shadow=np.empty((size, *mask_shape), np.uint64),
-        ways=np.empty((size, words), np.uint64),
-        whole=np.empty((size, words), np.uint64),
+        shadow=rows[:, :width].reshape(size, *mask_shape),
+        ways=rows[:, width : width + words],
+        whole=rows[:, width + words :],
         following=np.empty(size, np.int32),
         first=np.full(cells + 1, _NONE, np.int32),
         slots=np.full(1 << (2 * size - 1).bit_length(), _NONE, np.int32),
         ended=np.zeros((1, words), np.uint64),
         moves=np.zeros((blocks, *mask_shape), np.uint64),
+        after=np.zeros((most, *mask_shape), np.uint64),
+        keeps=np.zeros(most, np.bool_),
+        near=np.zeros(most, np.int32),
+        read=np.zeros(1, np.uint64),
     )
 
 
@@ -96,6 +110,34 @@ def _enter(walks, found, shadow):
     return found, found + 1
 
 
+@inlined
+def _list_children(walks, tables, shadow, wanted):
+    """Write the outlines that follow, and read the rows where they probably are.
+
+    These lie anywhere in memory. Many reads at once take little longer than one of them, and
+    then the rows are in the cache. Each is read at both ends, because it can begin in one line of
+    the cache and end in the next.
+    """
+    covered = count(shadow & wanted)
+    last = np.uint64(walks.slots.size - 1)
+    child = 0
+    for block in range(tables.area.size):
+        places = load(walks.moves, block)
+        while not is_empty(places):
+            move = block * tables.cells + lowest(places)
+            places = without_lowest(places)
+            after = shadow | load(tables.shadow, move)
+            store(walks.after, child, after)
+            # Without a hole, all cells of the region in the shadow are filled.
+            walks.keeps[child] = count(after & wanted) == covered + tables.area[block]
+            walks.near[child] = walks.slots[digest(after) & last]
+            child += 1
+    for index in range(child):
+        near = walks.near[index]
+        if near >= 0:
+            walks.read[0] += walks.ways[near, 0] + walks.whole[near, walks.whole.shape[1] - 1]
+
+
 @kernel
 def walk(walks, tables, region, cancel):
     """Find all outlines that legal placements reach from the empty board; count their sequences.
@@ -121,23 +163,17 @@ def walk(walks, tables, region, cancel):
                 return CANCELLED
             looked_at += 1
             shadow = load(walks.shadow, state)
-            covered = count(shadow & wanted)
             children = legal_moves(tables, shadow, walks.moves, 0)
             if children == 0 and _add(walks.ended, 0, walks.ways, state):
                 return OVERFLOW
-            for block in range(tables.area.size):
-                places = load(walks.moves, block)
-                while not is_empty(places):
-                    move = block * tables.cells + lowest(places)
-                    places = without_lowest(places)
-                    after = shadow | load(tables.shadow, move)
-                    child, found = _enter(walks, found, after)
-                    if child < 0:
-                        return FULL
-                    if _add(walks.ways, child, walks.ways, state):
-                        return OVERFLOW
-                    # Without a hole, all cells of the region in the shadow are filled.
-                    if count(after & wanted) == covered + tables.area[block]:
-                        _add(walks.whole, child, walks.whole, state)
+            _list_children(walks, tables, shadow, wanted)
+            for child in range(children):
+                place, found = _enter(walks, found, load(walks.after, child))
+                if place < 0:
+                    return FULL
+                if _add(walks.ways, place, walks.ways, state):
+                    return OVERFLOW
+                if walks.keeps[child]:
+                    _add(walks.whole, place, walks.whole, state)
             state = np.int64(walks.following[state])
     return found
