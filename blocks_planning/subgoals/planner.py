@@ -136,17 +136,15 @@ class Planner(Configured):
 
     def decide(self, situation: Situation) -> list[Query] | Decision:
         """See :class:`Strategy`."""
-        view, weighed = self.view, None
-        key = (view, situation.built, situation.start)
-        if view is not None:
-            weighed = situation.weighed.get(key)
+        key = (self.view, situation.built, situation.start)
+        weighed = situation.weighed.get(key)
         if weighed is None:
             found = list(self.weighed(self.chains(situation), situation))
             if missing := dict.fromkeys(one for one in found if isinstance(one, Query)):
                 return list(missing)
             candidates = tuple(one for one in found if isinstance(one, Candidate))
             weighed = Weighed(candidates, self.sequences(situation))
-            if view is not None:
+            if self.view is not None:
                 situation.weighed[key] = weighed
         return self.decision(weighed, situation)
 

@@ -243,7 +243,8 @@ def _values(value: Located) -> list[Any]:
     entries = value.entries('from', 'to', 'count')
     count = read_whole(entries['count'], 'count', 2, MAX_VALUES)
     first, last = _number(entries['from']), _number(entries['to'])
-    return [first + (last - first) * index / (count - 1) for index in range(count)]
+    steps = count - 1
+    return [first + (last - first) * index / steps for index in range(steps)] + [last]
 
 
 def read_whole(value: Located, name: str, least: int, most: int) -> int:

@@ -88,10 +88,28 @@ def test_sweep_is_set_up_as_the_paper_was() -> None:
         assert experiment.budget == design['budget']
         key = 'depth' if search.name == 'bfs' else 'iterations'
         assert getattr(search, key) == design[key]
-        by_commit = Counter(s.commit for s in experiment.strategies if isinstance(s, Scoping))
-        assert max(by_commit.values()) == design['lambdas']
         lambdas = [s.lam for s in experiment.strategies if isinstance(s, Scoping)]
         assert (min(lambdas), max(lambdas)) == (0, design['largest_lambda'][search.name])
+        is_extra = experiment.seeds is not None
+        assert len(lambdas) == (4 if is_extra else design['lambdas'])
+        assert len(experiment.strategies) == len(lambdas) + (0 if is_extra else 2)
+
+
+def test_every_combination_of_settings_is_run_at_common_values_of_lambda() -> None:
+    common: dict[tuple[str, str], set[float]] = {}
+    combinations = set()
+    for experiment in read_sweep(find_sweep('paper')).experiments[1:]:
+        [search] = experiment.searches
+        for planner in experiment.strategies:
+            if isinstance(planner, Scoping):
+                combinations.add((search, planner.commit))
+                common.setdefault((str(search), planner.commit), set()).add(round(planner.lam, 9))
+    assert len(combinations) == len(common) == 8
+    by_search = [
+        set.intersection(*(v for (s, _), v in common.items() if s.startswith(name)))
+        for name in ('BreadthFirst', 'AStar')
+    ]
+    assert [len(shared) for shared in by_search] == [4, 4]
 
 
 def test_sweep_has_every_row_of_table_1() -> None:

@@ -71,6 +71,13 @@ def test_more_seeds_keep_the_chunks_there_are(tmp_path: Path) -> None:
     assert {c.chunk_id for c in few.chunks()} < {c.chunk_id for c in many.chunks()}
 
 
+def test_evenly_spaced_values_end_where_they_should(tmp_path: Path) -> None:
+    """0.003 * 3 / 3 is not 0.003."""
+    text = GOOD.replace('{from: 0, to: 0.01, count: 3}', '{from: 0, to: 0.003, count: 4}')
+    strategies = read_sweep(written(tmp_path, text)).experiments[0].strategies
+    assert [strategies[1], strategies[-1]] == [Scoping(0.0), Scoping(0.003)]
+
+
 def test_experiment_can_have_the_first_seeds_alone(tmp_path: Path) -> None:
     whole = read_sweep(written(tmp_path, GOOD))
     few = read_sweep(written(tmp_path, GOOD.replace('budget: 1000', 'budget: 1000\n    seeds: 9')))

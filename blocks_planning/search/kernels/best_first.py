@@ -29,7 +29,7 @@ from blocks_planning.search.kernels.randomness import below
 
 _MOVE_BITS = 16  # a move is below 64 blocks * 256 cells = 2**14
 _MOVE = (1 << _MOVE_BITS) - 1
-_FIRST_CAPACITY = 128
+_FIRST_CAPACITY = 32
 _START, _SIZE, _CAPACITY = 0, 1, 2
 
 
