@@ -6,11 +6,11 @@
     DIR/trials.parquet      see :mod:`.tables`; written at the end
     DIR/decisions.parquet
     DIR/placements.parquet
-    DIR/chunks/ID/          the tables of each chunk, until the end
+    DIR/parts/ID/           the tables of each chunk, until the end
 
 A part is written under another name and then renamed, so an existing part is complete. The parts
 on disk determine which chunks are missing. Their tables are Arrow files, which are written and read
-several times as fast as Parquet.
+several times as fast as Parquet; parts that an earlier version left in Parquet are read as well.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Store:
     def __init__(self, folder: Path, sweep: SweepSpec) -> None:
         self.folder = folder
         self._sweep = sweep
-        self._parts = folder / 'chunks'
+        self._parts = folder / 'parts'
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -101,9 +101,7 @@ class Store:
         return self._parts / chunk.chunk_id
 
     def _read(self, chunk: Chunk) -> Tables:
-        part = self._part(chunk)
-        names = [str(part / f'{name}.arrow') for name in Tables._fields]
-        return Tables(*(pa.ipc.open_file(pa.memory_map(name)).read_all() for name in names))
+        return Tables(*(_read_part(self._part(chunk), name) for name in Tables._fields))
 
     def finish(self) -> None:
         """Write the tables from all parts, in the order of the sweep, and delete the parts."""
@@ -117,6 +115,13 @@ class Store:
             (half / f'{name}.parquet').replace(self.folder / f'{name}.parquet')
         half.rmdir()
         shutil.rmtree(self._parts)
+
+
+def _read_part(part: Path, name: str) -> pa.Table:
+    path = part / f'{name}.arrow'
+    if not path.is_file():
+        return read_table(part, name)
+    return pa.ipc.open_file(pa.memory_map(str(path))).read_all()
 
 
 def read_table(folder: Path, name: str, columns: list[str] | None = None) -> pa.Table:

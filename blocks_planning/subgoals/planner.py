@@ -91,7 +91,8 @@ class Planner(Configured):
     def view(self) -> Hashable:
         """What its chains depend on besides state and seed; None if they depend on more.
 
-        Planners with equal views list the same chains, so what they add and cost is used again.
+        Planners with equal views list the same chains, so what they add and cost is used again. A
+        subclass whose chains depend on more than the view of its base must override it.
         """
         return None
 

@@ -160,7 +160,7 @@ def test_interrupted_sweep_says_so_and_goes_on(folder: Path) -> None:
         command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     deadline = time.monotonic() + 60
-    while not list(folder.glob('out/chunks/????????????????')) and time.monotonic() < deadline:
+    while not list(folder.glob('out/parts/????????????????')) and time.monotonic() < deadline:
         time.sleep(0.01)
     os.kill(process.pid, signal.SIGINT)
     _, said = process.communicate(timeout=60)

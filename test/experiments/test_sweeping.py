@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from sweeps import STRATEGIES, sweep, tables_in
 
@@ -85,10 +86,13 @@ def test_interrupted_sweep_goes_on(
 
     with pytest.raises(KeyboardInterrupt):
         run_sweep(sweep(), tmp_path, workers, report=interrupt)
-    there = {part.name for part in (tmp_path / 'chunks').iterdir()}
+    there = {part.name for part in (tmp_path / 'parts').iterdir()}
     assert 1 <= len(there) < len(sweep().chunks())
     left = next(c for c in sweep().chunks() if c.chunk_id not in there)
-    (tmp_path / 'chunks' / f'{left.chunk_id}.half').mkdir()  # killed while it was written
+    (tmp_path / 'parts' / f'{left.chunk_id}.half').mkdir()  # killed while it was written
+    for table in (tmp_path / 'parts' / min(there)).iterdir():  # as an earlier version left it
+        pq.write_table(pa.ipc.open_file(table).read_all(), table.with_suffix('.parquet'))
+        table.unlink()
     ran: list[str] = []
 
     def run(chunk: Chunk) -> Tables:
@@ -102,7 +106,7 @@ def test_interrupted_sweep_goes_on(
     assert (reported[0], reported[-1]) == ((done, 360), (360, 360))
     assert set(ran) == {chunk.chunk_id for chunk in sweep().chunks()} - there
     assert tables_in(tmp_path) == whole
-    assert not (tmp_path / 'chunks').exists()
+    assert not (tmp_path / 'parts').exists()
 
 
 def test_finished_sweep_is_not_run_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,9 +5,12 @@ from __future__ import annotations
 import random
 from collections import Counter
 
+import numpy as np
 import pytest
 from oracles import randomness as oracle
 
+from blocks_planning.board.kernels.compiling import kernel
+from blocks_planning.search.kernels.randomness import below
 from blocks_planning.search.randomness import Generator, mask_words, mix
 
 SOURCE = random.Random(1)
@@ -19,6 +22,21 @@ WORDS = [[SOURCE.getrandbits(64) for _ in range(length)] for length in (0, 1, 5,
 def test_numbers_are_those_of_the_slow_twin(words: list[int], bound: int) -> None:
     generator, twin = Generator(words), oracle.Generator(oracle.key_from_words(words))
     assert [generator.below(bound) for _ in range(20)] == [twin.below(bound) for _ in range(20)]
+
+
+@kernel
+def _draw_below(generator, bound, draws):
+    for index in range(draws.size):
+        draws[index] = below(generator, bound)
+
+
+# The draws of the last two bounds are refused with probabilities of about 1/4 and 0.
+@pytest.mark.parametrize('bound', [1, 2, 7, 1000, 2**32 + 1, 2**62 + 1, 2**62])
+def test_compiled_numbers_are_those_of_the_slow_twin(bound: int) -> None:
+    key = SOURCE.getrandbits(64)
+    twin, draws = oracle.Generator(key), np.zeros(200, np.int64)
+    _draw_below(np.array([key], np.uint64), bound, draws)
+    assert draws.tolist() == [twin.below(bound) for _ in draws]
 
 
 def test_a_bound_that_refuses_half_of_all_draws_is_uniform_still() -> None:
