@@ -13,6 +13,7 @@ import json
 import random
 from collections.abc import Iterator
 from contextlib import nullcontext
+from dataclasses import replace
 from typing import Any
 
 from blocks_planning.board import rules
@@ -27,7 +28,7 @@ from blocks_planning.settings import Setting, described
 from blocks_planning.subgoals.none import NoSubgoals
 from blocks_planning.subgoals.proposals import Proposal, ProposalKind
 from blocks_planning.subgoals.registry import STRATEGIES
-from blocks_planning.trials.following import follow
+from blocks_planning.trials.following import Shared, follow
 from blocks_planning.trials.local import run_trial
 from blocks_planning.trials.reading import record_from_json
 from blocks_planning.trials.spec import TrialSpec
@@ -120,7 +121,8 @@ def check_strategy(cls: type[Any], towers: int = TOWERS, seed: int = 0) -> None:
     """Check a subgoal planner.
 
     Whole trials must give the same record with and without messages, and again when repeated;
-    the record must not change when it is written and read, and verification must find nothing.
+    the record must not change when it is written and read, and verification must find nothing. A
+    planner that says by its view that others list the same chains must list the same as these.
     """
     strategy = _made(cls)
     chance = random.Random(seed)
@@ -136,6 +138,10 @@ def _check_trial(cls: type[Any], spec: TrialSpec) -> None:
     _require(record == run_trial(spec, proposals=proposals), cls, 'is not repeatable')
     if not spec.strategy.asks_person:
         _require(record == follow(spec), cls, 'depends on how its queries are answered')
+    if (view := getattr(spec.strategy, 'view', None)) is not None:
+        shared = Shared()
+        follow(replace(spec, strategy=view), shared)
+        _require(record == follow(spec, shared), cls, 'lists other chains than its view')
     again = record_from_json(json.loads(record.to_line()), 'check')
     _require(again == record, cls, 'has a record that changes when it is written and read')
     for sentence in contradictions(record):

@@ -131,6 +131,16 @@ class Generous(Scoping):
 
 
 @dataclass(frozen=True)
+class Thinning(Scoping):
+    """Leaves out regions where states cost something, and does not tell by its view."""
+
+    name: ClassVar[str] = 'thinning'
+
+    def chains(self, situation: Any) -> Any:
+        return super().chains(situation)[-1:] if self.lam else super().chains(situation)
+
+
+@dataclass(frozen=True)
 class Careless(BreadthFirst):
     """Has a setting without help."""
 
@@ -173,6 +183,7 @@ class Credulous(Simulated):
         (testing.check_regions, Whole, 'adds no cell'),
         (testing.check_strategy, Wayward, 'wayward: '),
         (testing.check_strategy, Generous, 'generous: '),
+        (testing.check_strategy, Thinning, 'lists other chains than its view'),
         (testing.check_world, Moody, 'is not repeatable'),
         (testing.check_world, Credulous, 'accepts a block that rests on nothing'),
     ],

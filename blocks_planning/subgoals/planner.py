@@ -13,7 +13,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -88,11 +88,12 @@ class Planner(Configured):
         return False
 
     @property
-    def view(self) -> Hashable:
-        """What its chains depend on besides state and seed; None if they depend on more.
+    def view(self) -> Planner | None:
+        """The planner with fixed values of all settings that have no effect on its chains.
 
-        Planners with equal views list the same chains, so what they add and cost is used again. A
-        subclass whose chains depend on more than the view of its base must override it.
+        Planners with equal views list the same chains in a state, for one seed, so what these add
+        and cost is used again. None if that can't be said. A subclass whose chains depend on more
+        than the view of its base must override it.
         """
         return None
 

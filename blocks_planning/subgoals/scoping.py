@@ -68,7 +68,7 @@ class Scoping(Planner):
 
     @cached_property
     def view(self) -> Scoping:
-        """See :class:`Planner`. This planner without the settings that only matter afterwards."""
+        """See :class:`Planner`. The chains do not depend on how they are valued and chosen."""
         return replace(
             self, lam=0.0, commit='subgoal', choice='best', temperature=1.0, aggregate='best'
         )

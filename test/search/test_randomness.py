@@ -33,7 +33,7 @@ def _draw_below(generator, bound, draws):
 # The draws of the last two bounds are refused with probabilities of about 1/4 and 0.
 @pytest.mark.parametrize('bound', [1, 2, 7, 1000, 2**32 + 1, 2**62 + 1, 2**62])
 def test_compiled_numbers_are_those_of_the_slow_twin(bound: int) -> None:
-    key = SOURCE.getrandbits(64)
+    key = mix(bound)
     twin, draws = oracle.Generator(key), np.zeros(200, np.int64)
     _draw_below(np.array([key], np.uint64), bound, draws)
     assert draws.tolist() == [twin.below(bound) for _ in draws]
